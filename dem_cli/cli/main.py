@@ -7,6 +7,7 @@ everything that is the user's to mend, and returns its exit code (None is 0).
 from __future__ import annotations
 
 import atexit
+import errno
 import os
 import sys
 from contextlib import suppress
@@ -15,7 +16,7 @@ from typing import Any
 
 import click
 
-from dem_cli.errors import DemError
+from dem_cli.errors import DemError, OutputError
 from dem_cli.interrupts import Interrupts, asked
 from dem_cli.late_modules import start_lightly
 from dem_cli.version import __version__
@@ -59,6 +60,7 @@ def _leave() -> None:
 
 atexit.register(_leave)  # before others do, so that it comes after them
 
+UNPRINTED = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # why a file or device takes no more of what we print
 INTERRUPTED_CODE = 130  # what a shell reports for a program ended by Ctrl-C
 
 
@@ -117,6 +119,8 @@ class LazyGroup(click.Group):
         except Exception as error:
             if asked():
                 return interrupted()  # what a library made of it while it was imported
+            if isinstance(error, OSError) and error.filename is None and error.errno in UNPRINTED:
+                return unprinted(error)
             from dem_cli.cli import internal_error  # a fault of the program
 
             code = internal_error.report(error, internal_error.command_line(args[0] if args else options.get("args")))
@@ -127,6 +131,13 @@ def interrupted() -> int:
     """The end after Ctrl-C."""
     click.echo("interrupted", err=True)
     return INTERRUPTED_CODE
+
+
+def unprinted(error: OSError) -> int:
+    """The end where the file or device that our output goes to takes no more (`dem ... > /dev/full`)."""
+    click.echo(f"error: cannot print to the standard output: {os.strerror(error.errno or 0).lower()}", err=True)
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return OutputError.exit_code
 
 
 def unknown_command(name: str) -> str:

@@ -79,8 +79,8 @@ class Clock(Observer):
         self.compiling += time.perf_counter() - begun
 
     def seconds(self) -> float:
-        """Seconds of solving so far."""
-        return time.perf_counter() - self.started - self.compiling - self.observing
+        """Seconds of solving so far, with those before a run that was resumed."""
+        return self.stages.before + time.perf_counter() - self.started - self.compiling - self.observing
 
 
 def duration_words(value: float) -> str:

@@ -46,9 +46,10 @@ class LoadSearchSettings:
     doublings: int = 4  # of that load
     locked: float = 100.0  # internal multiplier at which a structure counts as self-locking
     shares: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98)  # of the estimate: first loads
-    shares_of_hinges: tuple[float, ...] = (0.5, 0.9)  # the same where nothing slides at the bound: any way leads there
+    shares_of_bound: tuple[float, ...] = (0.5, 0.9)  # the same where a path comes to the bound, or nothing slides there
     least: float = 1e-3  # internal multiplier that the resolution is relative to, at least
     jump: float = 5.0  # resolutions; a failure after a larger step is tried again from close by
+    leap: float = 0.04  # of a load, that a jump to a failure is at most where the next trial is right below it
     first_step: float = 0.5  # of the resolution: the first step from load to load after the first loads
     growth: float = 1.5  # of the next ones
     below: float = 0.2  # of the resolution: where a start is held; the rest is above it, where failure shows the sooner
@@ -63,6 +64,7 @@ class LoadSearchSettings:
     short: float = 0.6  # of the resolution: the trial below a load that limit analysis or the path expect, ...
     beyond: float = 0.35  # ... and the one above it
     small_steps: int = 200  # to the power of two above a load on which histories differ; 100 to 400 agree within 0.3 %
+    least_of_fewest: float = 0.5  # of the fewest steps of an equilibrium so far, that small steps take: 0.6 to 1.3
     light: float = 0.05  # load, over the weights, below which balance is asked for the more closely the smaller it is
     trial: int = 300_000  # steps of one trial until it is left undecided, at least; and
     trial_per_point: int = 100  # steps × number of contact points, and

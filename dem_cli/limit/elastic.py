@@ -12,6 +12,7 @@ inside Newton's iteration, so that the law is the real, non-associated one; the 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -20,12 +21,27 @@ from scipy.sparse import vstack
 from dem_cli.contact.compatibility import free_columns, relative_motion
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.newton_matrix import Factors, PointRows, newton_matrix
-from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
+from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings, PathSettings
 from dem_cli.limit.slip_cones import SlipCones
 from dem_cli.limit.slip_pairs import SlipPairs
 from dem_cli.limit.slips import Slips
 
-KINDS: dict[int, type[SlipPairs] | type[SlipCones]] = {2: SlipPairs, 3: SlipCones}  # of slips, by dimension
+
+def pairs_of(n_points: int, settings: PathSettings) -> SlipPairs:
+    """In the plane."""
+    return SlipPairs(n_points)
+
+
+def cones_of(n_points: int, settings: PathSettings) -> SlipCones:
+    """In space; those of many points are compiled: a third of the time, but code to be loaded."""
+    if n_points < settings.cones_compiled:
+        return SlipCones(n_points)
+    from dem_cli.limit.compiled_cones import CompiledCones
+
+    return CompiledCones(n_points)
+
+
+KINDS: dict[int, Callable[[int, PathSettings], Slips]] = {2: pairs_of, 3: cones_of}  # of slips, by dimension
 
 
 class State(NamedTuple):
@@ -80,11 +96,9 @@ class Elastic:
         self.gaps: np.ndarray | float = 0.0 if gaps is None else gaps / self.unit
         self.columns = np.tile(np.where(np.arange(n_dof) < d, 1.0, 1.0 / length), blocks)
         scaled = structure.compatibility.multiply(self.columns[None, :]).tocsr()
-        self.bn, self.bt = scaled[0::d].tocsr(), vstack([scaled[k::d] for k in range(1, d)]).tocsr()
-        self.bnt, self.btt = self.bn.T.tocsr(), self.bt.T.tocsr()
         self.kn, self.ks = joints.kn / self.stiffness, joints.ks / self.stiffness
         self.ks_t = np.tile(self.ks, d - 1)  # as the shear forces are numbered
-        self.slips: Slips = KINDS[d](len(self.kn))
+        self.slips: Slips = KINDS[d](len(self.kn), settings.path)
         self.friction = np.maximum(friction, settings.path.least_friction)
         self.dead = structure.dead * self.columns / self.weight
         live = structure.live * self.columns / self.weight
@@ -97,8 +111,10 @@ class Elastic:
         elastic = [self.kn, *self.slips.elastic(self.ks)]
         self.matrix = newton_matrix(self._points(structure), elastic, settings.path)
         self.order = order = self.matrix.order
-        self.bn, self.bt = self.bn[:, order].tocsr(), self.bt[:, order].tocsr()
-        self.bnt, self.btt = self.bn.T.tocsr(), self.bt.T.tocsr()
+        motion = vstack([scaled[k::d] for k in range(d)])[:, order]  # openings, then slides as shear is numbered
+        small = motion.shape[0] * motion.shape[1] <= settings.path.dense
+        self.motion = motion.toarray() if small else motion.tocsr()
+        self.pull = np.ascontiguousarray(self.motion.T) if small else self.motion.T.tocsr()
         self.columns, self.dead, self.live, self.own = (
             values[order] for values in (self.columns, self.dead, self.live, self.own)
         )
@@ -113,6 +129,14 @@ class Elastic:
     def n_points(self) -> int:
         """Number of contact points."""
         return len(self.kn)
+
+    def opened(self, displacements: np.ndarray) -> np.ndarray:
+        """How far joints open by displacements of the free degrees of freedom, (n_points,)."""
+        return (self.motion @ displacements)[: self.n_points]
+
+    def slid(self, displacements: np.ndarray) -> np.ndarray:
+        """How far they slide, as shear forces are numbered."""
+        return (self.motion @ displacements)[self.n_points :]
 
     def _points(self, structure: Structure) -> PointRows:
         """Motions at every point by scaled degrees of freedom."""
@@ -136,12 +160,12 @@ class Elastic:
 
     def imbalance(self, normal: np.ndarray, shear: np.ndarray, load: float) -> np.ndarray:
         """Unbalanced forces, (n_free,)."""
-        return self.bnt @ normal + self.btt @ shear + self.dead + load * self.live
+        return self.pull @ np.concatenate([normal, shear]) + self.dead + load * self.live
 
     def residual(self, state: State, before: State) -> float:
         """Largest unbalanced force, in own weights, of the forces that the joint law gives for the displacements."""
-        normal = np.maximum(-self.kn * (self.bn @ state.displacements + self.gaps), 0.0)
-        trial = before.shear - self.ks_t * (self.bt @ (state.displacements - before.displacements))
+        normal = np.maximum(-self.kn * (self.opened(state.displacements) + self.gaps), 0.0)
+        trial = before.shear - self.ks_t * self.slid(state.displacements - before.displacements)
         shear = self.slips.limited(trial, self.friction * normal)
         unbalanced = self.imbalance(normal, shear, state.load)
         return float((np.abs(unbalanced) / self.own).max(initial=0.0))

@@ -70,13 +70,14 @@ class Increment:
         self.problem, self.before, self.displacement, self.target = problem, before, displacement, load
         self.settings = problem.settings.of_increment(problem.dimension)
         self.end = (self.settings.end if end is None else end) * problem.lightest
+        self.gaps = problem.opened(before.displacements) + problem.gaps  # before, where joints have no stiffness
         self.last: Iterate | None = None  # of what was solved
 
     def start(self, tau: float, ahead: float) -> Iterate:
         """The last state moved off the boundary to products of τ; slips go on `ahead` times as far as before."""
         problem, before, slips = self.problem, self.before, self.problem.slips
         mu = problem.friction
-        opening = problem.bn @ before.displacements + before.normal / problem.kn + problem.gaps
+        opening = self.gaps + before.normal / problem.kn
         normal, opening = apart(before.normal - np.maximum(opening, 0.0), tau)
         limit, shear, slip = slips.started(mu * before.normal, before.shear, ahead * before.slip, tau)
         normal = np.maximum(normal, limit / mu)
@@ -155,7 +156,7 @@ class Increment:
         settings, slips = self.settings, self.problem.slips
         straight = self._direction(0.0)
         length = self._to_boundary(at, straight, 1.0)
-        left = float(slips.products(slips.moved(at.x, length * straight.positive)).mean()) / mean
+        left = float(slips.products(slips.moved(at.x, straight.positive, length)).mean()) / mean
         tau = max(float(np.clip(left**3, settings.least, 1.0)) * mean, self.end)
         most = settings.widest * mean
         products = tau - np.clip(slips.products(slips.moved(at.x, straight.positive)), -most, most)
@@ -173,7 +174,7 @@ class Increment:
         for _ in range(settings.correctors):
             if length > settings.far:
                 break
-            beyond = slips.products(slips.moved(at.x, min(1.0, length + settings.beyond) * step.positive))
+            beyond = slips.products(slips.moved(at.x, step.positive, min(1.0, length + settings.beyond)))
             wanted = np.clip(beyond, tau / settings.widest, tau * settings.widest)
             products = products + np.maximum(wanted - beyond, -settings.widest * tau)
             other = self._direction(products)
@@ -227,9 +228,9 @@ class Increment:
         problem, before, slips = self.problem, self.before, self.problem.slips
         normal, opening = slips.normals(at.x)
         self.unbalanced = problem.imbalance(normal, at.shear, at.load)
-        self.off_gap = problem.bn @ at.u + normal / problem.kn + problem.gaps - opening
-        slide = problem.bt @ (at.u - before.displacements)
-        self.off_slide = slips.slides(at.x) - (at.shear - before.shear) / problem.ks_t - slide
+        moved = problem.motion @ (at.u - before.displacements)
+        self.off_gap = self.gaps + moved[: problem.n_points] + normal / problem.kn - opening
+        self.off_slide = slips.slides(at.x) - (at.shear - before.shear) / problem.ks_t - moved[problem.n_points :]
         self.off_reserve = slips.lacks(problem.friction * normal, at.shear, at.x)
         if self.displacement is None:
             self.off_target = self.target - at.load
@@ -278,15 +279,16 @@ class Increment:
         """
         problem, joints = self.problem, self.joints
         rub = joints.rubbed(forced, off_slide, push)
-        u = self.lu.solve(unbalanced + problem.bnt @ push + problem.btt @ rub)
+        u = self.lu.solve(unbalanced + problem.pull @ np.concatenate([push, rub]))
         if self.displacement is None:
             load = off_target
         else:
             load = (off_target - problem.live @ u) / (problem.live @ self.by_live)
         u = u + load * self.by_live
-        closing = problem.bn @ u
+        moved = problem.motion @ u
+        closing, slide = moved[: problem.n_points], moved[problem.n_points :]
         d_normal = push - self.stiff_n * closing
-        d_shear = joints.sheared(rub, problem.bt @ u, closing)
+        d_shear = joints.sheared(rub, slide, closing)
         d_reserve = problem.slips.changes(problem.friction * d_normal, d_shear) + off_reserve
         d_opening = off_gap + closing + d_normal / problem.kn
         d_slip = joints.slipped(forced, d_reserve - off_reserve)
@@ -297,7 +299,7 @@ class Increment:
         most one.
         """
         slips = self.problem.slips
-        steepest = slips.extremes(slips.relative(at.x, step.positive))[0]
+        steepest = slips.fastest(at.x, step.positive)[0]
         share = self.settings.boundary if share is None else share
         return min(1.0, -share / steepest) if steepest < 0.0 else 1.0
 
@@ -305,7 +307,7 @@ class Increment:
         at.u = at.u + length * step.displacements
         at.load += length * step.load
         at.shear = at.shear + length * step.shear
-        at.x = self.problem.slips.moved(at.x, length * step.positive)
+        at.x = self.problem.slips.moved(at.x, step.positive, length)
 
     def _spread(self, at: Iterate, mean: float) -> float:
         """Largest ratio of a product to the mean, or of the mean to a product."""

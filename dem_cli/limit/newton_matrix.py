@@ -86,6 +86,7 @@ class SparseMatrix:
         self.place = np.full(used.size, len(keys))  # entries of fixed blocks go behind all others
         self.place[used.ravel()] = place
         self.diagonal = np.flatnonzero(self.indices == keys // n)
+        self.matrix = csc_matrix((np.zeros(len(keys)), self.indices, self.indptr), shape=(n, n))
 
     def factorised(self, factors: list[np.ndarray]) -> SparseFactors:
         """As NewtonMatrix has it."""
@@ -95,9 +96,8 @@ class SparseMatrix:
             values += np.multiply(factor[:, None], outer, out=more)
         data = np.bincount(self.place, values.ravel(), len(self.indices) + 1)[:-1]
         data[self.diagonal] += self.settings.singular * np.abs(data[self.diagonal]).mean()
-        n = len(self.order)
-        matrix = csc_matrix((data, self.indices, self.indptr), shape=(n, n))
-        return factors_of(matrix, self.permutation, self.settings.pivot)
+        self.matrix.data = data
+        return factors_of(self.matrix, self.permutation, self.settings.pivot)
 
 
 class FrontMatrix:

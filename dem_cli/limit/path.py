@@ -356,7 +356,7 @@ def _keep(
     path.residual = problem.residual(state, before)
     path.normal = state.normal * problem.weight
     path.shear = state.shear.reshape(-1, problem.n_points).T * problem.weight
-    gaps = problem.bn @ state.displacements
+    gaps = problem.opened(state.displacements)
     closed = state.normal > problem.kn * (gaps + state.normal / problem.kn)
     path.gaps = np.where(closed, -state.normal / problem.kn, np.maximum(gaps, 0.0)) * problem.unit
     path.displacements = structure.on_blocks(moved)

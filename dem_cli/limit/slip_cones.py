@@ -169,8 +169,11 @@ class SlipCones:
 
     def products(self, x: np.ndarray) -> np.ndarray:
         """N p, c₁ a₁, c₂ a₂."""
-        at = polar(x)
-        return np.concatenate([at.normal * at.opening, (at.c * at.a).ravel()])
+        n = self.n_points
+        found = np.empty(3 * n)
+        np.multiply(x[:n], x[n : 2 * n], out=found[:n])
+        np.multiply(x[2 * n : 4 * n], x[4 * n : 6 * n], out=found[n:])
+        return found
 
     def relative(self, x: np.ndarray, change: np.ndarray) -> np.ndarray:
         """Of eigenvalues over themselves; across d over c₀ and a₀, an angle where the element turns."""
@@ -191,9 +194,13 @@ class SlipCones:
             high = max(high, float((middle + radius).max(initial=0.0)))
         return low, high
 
-    def moved(self, x: np.ndarray, change: np.ndarray) -> np.ndarray:
+    def fastest(self, x: np.ndarray, change: np.ndarray) -> tuple[float, float]:
+        """Along and across."""
+        return self.extremes(self.relative(x, change))
+
+    def moved(self, x: np.ndarray, change: np.ndarray, length: float = 1.0) -> np.ndarray:
         """Numbers added, reserves and slips turned."""
-        return np.concatenate([np.atleast_2d(part) for part in polar(x).moved(change_of(change))]).ravel()
+        return np.concatenate([np.atleast_2d(part) for part in polar(x).moved(change_of(length * change))]).ravel()
 
     def linear(self, x: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> ConeStiffness:
         """The products made linear."""

@@ -55,7 +55,7 @@ class SlipPairs:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Each reserve and its slip apart."""
         reserve, slip = apart(np.maximum(self.changes(limit, shear), 0.0) - slip, tau)
-        one, two = np.split(reserve, 2)
+        one, two = _pair(reserve)
         return 0.5 * (one + two), 0.5 * (one - two), slip
 
     def joined(
@@ -77,9 +77,13 @@ class SlipPairs:
         """Of all numbers."""
         return float(relative.min(initial=0.0)), float(relative.max(initial=0.0))
 
-    def moved(self, x: np.ndarray, change: np.ndarray) -> np.ndarray:
+    def fastest(self, x: np.ndarray, change: np.ndarray) -> tuple[float, float]:
+        """Of all numbers."""
+        return self.extremes(self.relative(x, change))
+
+    def moved(self, x: np.ndarray, change: np.ndarray, length: float = 1.0) -> np.ndarray:
         """Number by number."""
-        return x + change
+        return x + length * change
 
     def linear(self, x: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> PairStiffness:
         """The products made linear."""
@@ -94,7 +98,7 @@ class PairStiffness:
         self, reserve: np.ndarray, slip: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray
     ) -> None:
         self.reserve, self.slip, self.ratios = reserve, slip, slip / reserve
-        one, two = np.split(self.ratios, 2)
+        one, two = _pair(self.ratios)
         self.soft_t = 1.0 / ks + one + two
         self.stiff_t = 1.0 / self.soft_t
         self.drag = friction * (one - two) / self.soft_t
@@ -115,7 +119,7 @@ class PairStiffness:
 
     def rubbed(self, forced: np.ndarray, off_slide: np.ndarray, push: np.ndarray) -> np.ndarray:
         """Slips and normal forces turned into shear force by the soft joint."""
-        one, two = np.split(forced, 2)
+        one, two = _pair(forced)
         return (one - two + off_slide) / self.soft_t - self.drag * push
 
     def sheared(self, rubbed: np.ndarray, slide: np.ndarray, closing: np.ndarray) -> np.ndarray:
@@ -125,3 +129,9 @@ class PairStiffness:
     def slipped(self, forced: np.ndarray, change: np.ndarray) -> np.ndarray:
         """Where a reserve grows its slip falls."""
         return forced - self.ratios * change
+
+
+def _pair(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Those of + and of −."""
+    half = len(values) // 2
+    return values[:half], values[half:]

@@ -91,8 +91,11 @@ class Slips(Protocol):
     def extremes(self, relative: np.ndarray) -> tuple[float, float]:
         """The fastest fall and growth of anything in x, relative to itself; at −1 x leaves its cones."""
 
-    def moved(self, x: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """x after a change that leaves it inside its cones."""
+    def fastest(self, x: np.ndarray, change: np.ndarray) -> tuple[float, float]:
+        """The extremes of a change in units of x."""
+
+    def moved(self, x: np.ndarray, change: np.ndarray, length: float = 1.0) -> np.ndarray:
+        """x after so much of a change, which leaves it inside its cones."""
 
     def linear(self, x: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> SlipStiffness:
         """The condition made linear; stiff_n: stiffness across the joint."""

@@ -62,6 +62,9 @@ class LoadSearch:
         self.impossible = np.inf  # load from which on limit analysis proved that nothing is in equilibrium
         self.on_stiff_joints = np.inf  # load of joints that are stiff, where geometry moves: a creep may throw blocks
         self.first_step = sim.steps
+        self.large = (
+            False  # whether the load is raised from the end of a path that was followed as far as is affordable
+        )
         answer.scale, answer.limit = scale, self.limit * scale
 
     def run(self, start: WarmStart | CurveStart | None = None) -> None:
@@ -99,17 +102,24 @@ class LoadSearch:
 
         Where histories differ the steps may decide: this is then the history that a failure load is stated for. No
         estimate has a say in it, so that it is always the same for the same structure. Where the budget ends first, or
-        all that a search may cost is spent, the bracket stays that of the larger steps.
+        all that a search may cost is spent, the bracket stays that of the larger steps; it is not begun, nor gone on
+        with, where that can be seen beforehand.
         """
+        step = most / self.sim.live_scale / self.settings.small_steps
+        trials = TrialLoads(
+            self.settings, self.resolution, 0.0, [], step, step, min(self.limit, self.impossible),
+            goal=self.answer.carried / self.sim.live_scale,
+        )  # fmt: skip
+        if self._enough(trials):
+            return
         known, rows = replace(self.answer), [*self.track.kept]
         self.track.kept[:] = rows[:1]
         self.answer.begin_again(self.at_rest)
-        step = most / self.sim.live_scale / self.settings.small_steps
         finished = False
         try:
             with suppress(SolverError):
-                self._raise_load(self._trials([], step, step))
-                finished = not self.answer.wide or (self.answer.found and not self._enough())
+                self._raise_load(trials)
+                finished = not self.answer.wide or (self.answer.found and not self._enough(trials))
         finally:
             if not finished:
                 vars(self.answer).update(vars(known))
@@ -133,8 +143,8 @@ class LoadSearch:
         expected = False
         if self.impossible < np.inf:
             estimate, expected = self._expected(min(estimate, self.impossible))
-        hinges = expected and answer.limits is not None and not answer.limits.slides
-        levels = [share * estimate for share in (settings.shares_of_hinges if hinges else settings.shares)]
+        at_the_bound = expected and self._at_the_bound()
+        levels = [share * estimate for share in (settings.shares_of_bound if at_the_bound else settings.shares)]
         if expected:
             levels.append((1.0 - settings.short * self.resolution) * estimate)
             levels.append((1.0 + settings.beyond * self.resolution) * estimate)
@@ -156,6 +166,16 @@ class LoadSearch:
             return max(load, estimate), False
         self.plateau = load
         return load, True
+
+    def _at_the_bound(self) -> bool:
+        """Whether the load of the bound does not hang on the way there: nothing slides, or the path ends there too."""
+        limits = self.answer.limits
+        assert limits is not None
+        if not limits.slides:
+            return True
+        path = limits.path if limits.followed else None
+        load = (path.load or 0.0) / self.sim.live_scale if path is not None else 0.0
+        return load >= (1.0 - self.resolution) * self.impossible
 
     def _ends_where_the_path_does(self) -> bool:
         """Whether the path of a large structure leads to a load that the explicit solver holds.
@@ -179,6 +199,7 @@ class LoadSearch:
         self.settings = replace(
             settings, effort=settings.effort_of_large, trial=most, trial_per_point=0, most_undecided=0
         )
+        self.large = True
         self._raise_load(self._trials([], settings.step_of_large * (answer.bound - start.load) / scale))
         return True
 
@@ -279,7 +300,7 @@ class LoadSearch:
     def _raise_load(self, trials: TrialLoads) -> None:
         """Load after load, until the bracket is narrow enough, or as narrow as it can be made."""
         answer = self.answer
-        while (load := trials.next()) is not None and not self._enough():
+        while (load := trials.next()) is not None and not self._enough(trials):
             verdict = self._settle(load)
             if verdict.state == "equilibrium":
                 trials.carries(load)
@@ -307,11 +328,25 @@ class LoadSearch:
             self.sim.restore(answer.failed_state)
             self.track.keep("collapse")
 
-    def _enough(self) -> bool:
-        """Whether a bracket that is known cost so much that it is not narrowed any more."""
-        answer, settings = self.answer, self.settings
-        known = bool(answer.low) and (answer.high is not None or answer.bound is not None)
-        return known and (self.sim.steps - self.first_step) * len(self.sim.joints.kn) > settings.effort
+    def _enough(self, trials: TrialLoads) -> bool:
+        """Whether a bracket that is known cost so much, or would until it is any narrower, that it stays as it is."""
+        answer, to_come = self.answer, self._steps_to_come(trials)
+        if not (answer.low or trials.goal) or (answer.high is None and answer.bound is None):
+            return False
+        spent = self.sim.steps - self.first_step
+        return to_come > self.budget.left or (spent + to_come) * len(self.sim.joints.kn) > self.settings.effort
+
+    def _steps_to_come(self, trials: TrialLoads) -> float:
+        """Steps before anything new is known, at least.
+
+        Small steps come to where larger ones did, each by a share of what any equilibrium took so far. Of a large
+        structure, whose failure took so long to show, a lower load takes longer still.
+        """
+        steps = {state: [each.steps for each in self.answer.passes if each.state == state and each.kind == "load"]
+                 for state in ("equilibrium", "failure")}  # fmt: skip
+        if trials.to_come:
+            return trials.to_come * self.settings.least_of_fewest * min(steps["equilibrium"], default=0)
+        return steps["failure"][-1] if self.large and trials.high is not None else 0
 
     def _try_crept(self, trials: TrialLoads) -> None:
         """The equilibrium of the creep, where it is inside the bracket: closer to failure, if it holds as well."""

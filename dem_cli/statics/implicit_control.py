@@ -143,7 +143,7 @@ class ImplicitControl(DisplacementControl):
     def _move(self, posed: PosedIncrement, found: State) -> None:
         """Puts the blocks where an increment takes them, with its shear forces; gaps follow from the geometry."""
         problem, before, kept, on_blocks = posed
-        slid = problem.bt @ found.displacements + (found.shear - before.shear) / problem.ks_t
+        slid = problem.slid(found.displacements) + (found.shear - before.shear) / problem.ks_t
         friction = -float(found.shear @ slid) * problem.weight * problem.unit
         shear = self.sim.contacts.shear.copy()
         shear[kept] = found.shear.reshape(-1, int(kept.sum())).T * problem.weight

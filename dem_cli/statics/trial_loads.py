@@ -22,9 +22,11 @@ class TrialLoads:
     step: float  # from the last of them on
     longest: float = float("inf")  # step of the load that is never exceeded
     limit: float = float("inf")  # load above which nothing is tried
+    goal: float = 0.0  # load that is known to be carried, to which steps of one length lead
     high: float | None = None  # lowest load that fails
     undecided: list[float] = field(default_factory=list)  # between them
     jumped: bool = False  # the failure came after a jump, which may break what a gentler step does not
+    leapt: bool = False  # the load next below it was tried at once
 
     def __post_init__(self) -> None:
         self._first_step = self.step
@@ -39,6 +41,11 @@ class TrialLoads:
         """Whether the bracket is as narrow as asked for."""
         return self.high is not None and self.high - self.low <= self.width
 
+    @property
+    def to_come(self) -> float:
+        """How many steps of the load there still are to its goal."""
+        return max(self.goal - self.low, 0.0) / self.longest if self.high is None else 0.0
+
     def next(self) -> float | None:
         """The load to try next; None where the bracket is narrow enough, or cannot be made any narrower."""
         if self.high is None:
@@ -46,7 +53,7 @@ class TrialLoads:
         if self.closed:
             return self.high if self.jumped else None
         if not self.undecided:
-            return 0.5 * (self.low + self.high)
+            return self._next_below() or 0.5 * (self.low + self.high)
         if len(self.undecided) > self.settings.most_undecided:
             return None
         aside = self.settings.aside * self.width * 2.0 ** (len(self.undecided) - 1)
@@ -55,6 +62,20 @@ class TrialLoads:
         if below - self.low > nearest:
             return below
         return above if self.high - above > nearest else None
+
+    def _next_below(self) -> float | None:
+        """Once, after a jump to a failure not far above: of the loads that halving leads to, the one that closes the
+        bracket.
+        """
+        if self.leapt or not self.jumped or self.high is None:
+            return None
+        self.leapt = True
+        if self.high - self.low > self.settings.leap * abs(self.low):
+            return None
+        load = self.low
+        while self.high - load > self.resolution * max(abs(load), self.settings.least):
+            load = 0.5 * (load + self.high)
+        return load
 
     def _upwards(self) -> float | None:
         if self.low >= self.limit or len(self.undecided) > self.settings.most_undecided:

@@ -204,6 +204,19 @@ def test_a_reader_that_goes_away_is_no_error():
     assert (result.stdout, result.stderr) == ("{\n", "")
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is full")
+def test_a_full_disk_below_what_is_printed_is_no_fault():
+    result = subprocess.run(
+        ["bash", "-c", f'"{sys.executable}" -m dem_cli schema > /dev/full'],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        env=ENVIRONMENT,
+    )
+    said = "error: cannot print to the standard output: no space left on device\n"
+    assert (result.returncode, result.stderr) == (3, said)
+
+
 def test_a_command_that_ended_runs_what_others_left_for_the_end_and_no_more():
     code = (
         "import atexit, sys\n"

@@ -123,7 +123,10 @@ def test_sigkill_of_a_time_history(tmp_path):
     )
     assert changed.exit_code == 2
     assert "cannot resume: the case changed" in changed.output
+    before = json.loads((told.parent / "about.json").read_text(encoding="utf-8"))["seconds"]
     done = CliRunner().invoke(main, ["run", str(case), "-o", str(folder), "-q", "--resume"])
     assert done.exit_code == 0, done.output
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    assert summary["solve_seconds"] > before > 0.0
     assert results(folder) == results(tmp_path / "straight")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "straight"]

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 import dem_cli
+from dem_cli.engine.static_settings import LoadSearchSettings
 from dem_cli.statics.failure_load import LoadSearch
 
 WALL = """
@@ -49,21 +50,30 @@ def test_wrong_estimates(tmp_path, monkeypatch, wrong):
     assert found["warnings"][0].startswith("methods differ by")
 
 
-def test_small_steps_that_cost_too_much_leave_the_load_of_larger_ones(tmp_path, monkeypatch):
-    """A wall of 520 blocks in space had a load, and was "not converged" as its small steps ended at a quarter of it."""
+@pytest.mark.parametrize("seen", [0.0, LoadSearchSettings.least_of_fewest])
+def test_small_steps_that_cost_too_much_leave_the_load_of_larger_ones(tmp_path, monkeypatch, seen):
+    """A wall of 520 blocks in space had a load, and was "not converged" as its small steps ended at a quarter of it.
+
+    They are cut short here after half of the steps that were taken before, or not begun, as that is seen beforehand.
+    """
     case = tmp_path / "wall.toml"
     case.write_text(WALL)
     again = LoadSearch.run_again_in_small_steps
 
     def cut_short(self, most):
         assert self.answer.found
+        steps = self.sim.steps - self.first_step
+        effort = 1.5 * steps * len(self.sim.joints.kn)
+        self.settings = replace(self.settings, effort=effort, least_of_fewest=seen)
         found.append((self.answer.carried, self.answer.failed))
-        self.settings = replace(self.settings, effort=0.0)
         again(self, most)
+        tried.append((self.sim.steps - self.first_step) / steps)
 
     found: list[tuple[float, float]] = []
+    tried: list[float] = []
     monkeypatch.setattr(LoadSearch, "run_again_in_small_steps", cut_short)
     summary = dem_cli.run(case).summary
     assert summary["status"] == "ok"
     assert tuple(summary["failure_load_bracket"]) == found[0]
     assert "the load again in small steps: not finished; it is that of larger steps" in summary["skipped"]
+    assert tried[0] == 1.0 if seen else tried[0] > 1.5

@@ -71,6 +71,17 @@ def test_large_structures_in_space_go_on_from_where_their_path_ends():
     low, high = summary["failure_load_bracket"]
     assert low < 0.6460 < high < low * 1.0021
     assert (summary["search"][0]["kind"], summary["search"][0]["state"]) == ("start", "equilibrium")
+    states = [each["state"] for each in summary["search"]]
+    shown = states.index("failure")  # after so many steps; what is left for a lower load is less than that failure took
+    assert len(states) > shown + 1
+    steps = sum(each["steps"] for each in summary["search"][: shown + 1])
+    short = replace(
+        DEFAULT.load_search, effort_of_large=(steps + 0.9 * summary["search"][shown]["steps"]) * summary["contacts"]
+    )
+    ended = run("wall_21_mu075", *in_space, settings=replace(settings, load_search=short))
+    assert ended["search"] == summary["search"][: shown + 1]
+    assert ended["failure_load"] == ended["failure_load_bracket"][0] == ended["search"][0]["load"]
+    assert any("is wider than" in text for text in ended["warnings"])
 
 
 @pytest.mark.parametrize("factor", [1.3, 0.7])

@@ -53,6 +53,8 @@ DEFAULT_KEEPING = Keeping()
 class Stages:
     """Stages of a run of which nothing is kept; all of them are done."""
 
+    before = 0.0  # s of work before this run, whose stages it goes on from
+
     def done(self, name: str, arguments: tuple[Any, ...], work: Callable[[], Found]) -> Found:
         """What a stage gives: by work, or as it was kept."""
         return work()
@@ -127,7 +129,7 @@ class KeptStages(Stages):
         self._told = 0  # so far, by this run
         self._waiting: list[tuple[str, Any]] = []  # told, and not kept yet
         self._cost = 0.01  # s of keeping a stage
-        self._before = kept.seconds  # of work, before this run
+        self.before = kept.seconds
         self._open = [_UnderWay("", "", [], self._begun)]
 
     # -- what is told ------------------------------------------------------------------------------
@@ -214,7 +216,7 @@ class KeptStages(Stages):
         self._places += self.kept.tell([encoded([], entry) for entry in self._waiting])
         self._waiting.clear()
         state = encoded(under_way.changing, what)
-        seconds = self._before + begun - self._begun
+        seconds = self.before + begun - self._begun
         self.kept.write(name, encoded([], (under_way.name, self._told, state)), seconds)
         self._names.add(name)
         self._cost = self._now() - begun

@@ -14,9 +14,10 @@ from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.geometry.polygon import properties
 from dem_cli.limit.analysis import limit_loads, start_structure
 from dem_cli.limit.cone import friction_of
-from dem_cli.limit.elastic import Elastic
+from dem_cli.limit.elastic import Elastic, cones_of
 from dem_cli.limit.matrices import Structure, structure_of
 from dem_cli.limit.path import OK, Path, _advance, _at_rest, _compliance, trace
+from dem_cli.limit.settings import PathSettings
 from dem_cli.limit.slip_cones import SlipCones
 
 NEAR = 1e-6  # relative, of loads: the path ends where they grow no more
@@ -187,6 +188,30 @@ def test_a_small_step_leaves_an_error_of_second_order(share):
     assert np.abs(reserves(slips, moved) - c - change).max() < 20.0 * share**2 * smallest.max()
     slid = slips.slides(moved) - slips.slides(x) - d_slip[n:]
     assert np.abs(slid).max() < 20.0 * share**2 * np.abs(slips.slides(x)).max()
+
+
+def test_many_points_are_worked_out_in_compiled_code_to_the_same_digits():
+    """All that an iteration asks for, at points that turn and points that hardly slide."""
+    plain, x, tau = points()
+    compiled, n, rng = (
+        cones_of(plain.n_points, PathSettings(cones_compiled=0)),
+        plain.n_points,
+        np.random.default_rng(3),
+    )
+    assert type(compiled) is not SlipCones
+    assert type(cones_of(n, PathSettings(cones_compiled=n + 1))) is SlipCones
+    change = rng.normal(size=8 * n) * 10.0 ** rng.uniform(-6.0, 0.0, 8 * n)
+    ks, mu, stiff_n = rng.uniform(0.5, 2.0, (3, n))
+    forced, off, slide = rng.normal(size=3 * n), rng.normal(size=3 * n), rng.normal(size=2 * n)
+
+    def asked(slips: SlipCones) -> list:
+        stiffness = slips.linear(x, mu, ks, stiff_n)
+        numbers = [slips.moved(x, change), slips.moved(x, change, 0.3), stiffness.towards(np.full(2 * n, tau), off),
+                   stiffness.towards(np.broadcast_to(tau, 2 * n), off), stiffness.rubbed(forced, slide, ks),
+                   stiffness.sheared(slide, off[:2 * n], mu), stiffness.slipped(forced, off)]  # fmt: skip
+        return [slips.fastest(x, change), *(values.tolist() for values in numbers)]
+
+    assert asked(compiled) == asked(plain)
 
 
 def test_a_slip_turns_far_and_stays_in_its_cone():

@@ -49,6 +49,19 @@ def test_a_load_that_stays_undecided_is_gone_round(exact, guess, dead_zone):
     assert wanted.closed
 
 
+def test_after_a_short_jump_the_load_right_below_the_failure_is_next():
+    """The bracket of halving, in two trials instead of five; where that one fails as well, halving goes on."""
+    found, halved = (trials(levels=[0.5, 0.98, 0.9988]) for _ in range(2))
+    halved.leapt = True
+    tried, others = searched(found, 0.9987), searched(halved, 0.9987)
+    assert (found.low, found.high) == (halved.low, halved.high) == (0.997625, 0.9988)
+    assert (tried[3:], len(others[3:])) == ([0.997625, 0.9988], 5)
+    wrong = trials(levels=[0.5, 0.98, 0.9988])
+    assert searched(wrong, 0.9955)[3:5] == [0.997625, 0.5 * (0.98 + 0.997625)]
+    assert wrong.closed
+    assert searched(trials(levels=[0.5, 0.9]), 0.6)[2] == 0.7  # a jump to what was not expected to fail is halved
+
+
 def test_a_wide_dead_zone_ends_in_a_wide_bracket_and_not_never():
     wanted = trials()
     tried = searched(wanted, 0.95, dead_zone=0.02)
