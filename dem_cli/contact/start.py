@@ -31,13 +31,9 @@ def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0, moves: bool =
     return Bodies(
         positions, orientations, np.zeros((n, n_dof)), np.zeros((n, n_dof)), np.zeros((n, n_dof)),
         world_corners(shape, positions, orientations), turns, mobilities(shape.inertias, shape.axes, turns),
-        np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n), **_unturned(orientations), **_unstrained(model),
+        np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n),
+        poses=orientations.copy(), turned=np.zeros(n, np.int8), **_unstrained(model),
     )  # fmt: skip
-
-
-def _unturned(orientations: np.ndarray) -> dict[str, np.ndarray]:
-    """Fields of joints that hold their geometry."""
-    return {"poses": orientations.copy(), "turned": np.zeros(len(orientations), np.int8)}
 
 
 def _unstrained(model: Model) -> dict[str, np.ndarray]:

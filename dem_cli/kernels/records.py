@@ -35,8 +35,8 @@ class Bodies(NamedTuple):
     pulled: np.ndarray  # velocities before the dashpots of a step, then after all of it, before blocks turn on,
     # (n_blocks·n_dof,)
     travel: np.ndarray  # bound of how far any corner moved since detection [m], (n_blocks,)
-    # In space, for joints that hold their geometry (kernels/spatial_forces.py), else empty:
-    poses: np.ndarray = NO_MODES  # orientations that turns count from, (n_blocks, 4)
+    # For joints in space that hold their geometry (kernels/spatial_forces.py):
+    poses: np.ndarray = NO_MODES  # orientations from which turns count, as `orientations`
     turned: np.ndarray = NOTHING  # 1: has turned from there by what joints notice, and there it is now, (n_blocks,)
     # Of blocks that deform (model/uniform_strain.py), else empty:
     modes: np.ndarray = NO_MODES  # amplitudes [m], (n_blocks, m)
@@ -73,9 +73,7 @@ class MovingJoints(NamedTuple):
     kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
-    held: np.ndarray = (
-        NO_JOINTS  # in space: points that touch, n, where geometry is held; −1 − n: just measured, (n_joints,)
-    )
+    held: np.ndarray = NO_JOINTS  # in space: points that touch, n; −1 − n where geometry was just measured, (n_joints,)
 
     @property
     def owners(self) -> np.ndarray:

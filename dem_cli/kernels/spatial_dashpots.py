@@ -3,6 +3,7 @@
 An impulse J gives up S (w₀ + w + C⁻¹ J), S = (C⁻¹ + K)⁻¹ along the axes of the world, K rates by impulses at the point,
 C half of damping × step; it goes no lower than its bound by moving along S n. A point that slips has S = s n nᵀ. While
 sweeps last, velocities are sums of those before and after the step, so that w₀ + w is one rate and nothing else.
+Joints that hold their geometry (spatial_forces.py) keep their rows while the same points touch, stick and slip.
 """
 
 from __future__ import annotations
@@ -162,8 +163,8 @@ def _goes_on(joints, contacts, dampers, joint):
 
 
 @always_inline
-def _count_touching(held):
-    """Points of a joint that touch, whether its geometry is held or was just measured."""
+def _touching(held):
+    """How many points of a joint touch, whether its geometry is held or was just measured."""
     return held if held >= 0 else -1 - held
 
 
@@ -172,7 +173,7 @@ def _make_room(joints, dampers):
     """Begins with the first row again, for all joints, where those that may come now have no room any more."""
     needed = dampers.packed[-1]
     for joint in range(joints.held.shape[0]):
-        needed += _count_touching(joints.held[joint])
+        needed += _touching(joints.held[joint])
     if needed > dampers.gains.shape[0]:
         dampers.packed[:], dampers.lasts[:], dampers.rooms[:] = 0, 0, 0
 
@@ -180,7 +181,7 @@ def _make_room(joints, dampers):
 @always_inline
 def _first_row(joints, dampers, joint):
     """Where the rows of a joint go that are made anew: where they were, or where nothing is yet."""
-    packed, n = dampers.packed, _count_touching(joints.held[joint])
+    packed, n = dampers.packed, _touching(joints.held[joint])
     if n > dampers.rooms[joint]:
         packed[joint], dampers.rooms[joint] = packed[-1], n
         packed[-1] += n
@@ -196,11 +197,8 @@ def _push_on(joints, contacts, bodies, dampers, dt, joint, a, b, like):
         row = np.uint64(number)
         point = np.uint64(holders[row])
         seen[point] = slips[point]
-        least, normal, impulse = (
-            least_of(contacts.normal[point], dt),
-            load(rows, row, NORMAL, like),
-            load(rows, row, IMPULSE, like),
-        )
+        normal, impulse = load(rows, row, NORMAL, like), load(rows, row, IMPULSE, like)
+        least = least_of(contacts.normal[point], dt)
         rows[row, LEAST] = least
         short = least - dot(normal, impulse)
         if short > 0.0:
@@ -325,11 +323,8 @@ def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, swept, n,
         spin_a, spin_b = load(velocities, a, 3, like_rotation), load(velocities, b, 3, like_rotation)
         for j in range(high - low):
             row = np.uint64(high - 1 - j if backwards else low + j)
-            normal, impulse, arm_a = (
-                load(rows, row, NORMAL, like),
-                load(rows, row, IMPULSE, like),
-                load(rows, row, ARM, like),
-            )
+            normal, impulse = load(rows, row, NORMAL, like), load(rows, row, IMPULSE, like)
+            arm_a = load(rows, row, ARM, like)
             arm_b = axpy(1.0, apart, arm_a)
             turning = axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b))
             rate = plus_modes(motions, velocities, holders[row], a, b, axpy(1.0, turning, axpy(-1.0, va, vb)))

@@ -1,7 +1,8 @@
 """The loop over joints in space whose geometry moves: points renewed where they are due, gaps first, then forces.
 
 Each point has the normal of its feature (spatial_features.py); shear is counted along a direction fixed in block a, so
-that two blocks that turn together keep their forces.
+that two blocks that turn together keep their forces. In time histories a joint holds normals and places of its points
+while its blocks hardly turn or move against each other: gaps grow by the rate of opening then, as slips do.
 """
 
 from __future__ import annotations
@@ -57,11 +58,9 @@ def _measure(joint, joints, geometry, contacts, bodies, remembers, bonded, cappe
             frames[point, k], frames[point, 3 + k], frames[point, 6 + k] = normal[k], t1[k], t2[k]
             places[point, k] = place[k]
     tilt, apart = axpy(-1.0, frame[0], frame[1]), minus3(row3(bodies.positions, a), row3(bodies.positions, b))
-    holds = (
-        holds and geometry.kinds[joint] == FACES and geometry.rises[joint] == 0.0 and dot(tilt, tilt) <= HOLDS * HOLDS
-    )
+    plain = geometry.kinds[joint] == FACES and geometry.rises[joint] == 0.0 and dot(tilt, tilt) <= HOLDS * HOLDS
     for k in range(3):
-        geometry.apart[joint, k] = apart[k] if holds else math.nan
+        geometry.apart[joint, k] = apart[k] if holds and plain else math.nan
 
 
 @always_inline
@@ -157,7 +156,7 @@ def make_spatial_forces(
                 torque_b = axpy(1.0, moment(arm_b, pushed), torque_b)
                 if strains:
                     stretch_apart(bodies.dyads, a, b, pushed, arm_a, arm_b)
-            if holds:
+            if meets:
                 joints.held[joint] = n_touch if held else -1 - n_touch
             if n_loaded > 0:
                 push_apart(forces, a, b, force, torque_a, torque_b)

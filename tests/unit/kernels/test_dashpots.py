@@ -44,7 +44,8 @@ def scene(n_points: int = 4, viscosity: float = 1.0, seed: int = 5):
     )  # fmt: skip
     dampers = SimpleNamespace(
         first=0, viscosity=np.full(2, viscosity), elements=np.zeros((0, 2)), rates=np.zeros((n, 3)),
-        gains=np.ones((n, WIDTH)), packed=np.zeros(3, int), lasts=np.zeros(2, int), rooms=np.zeros(2, int), holders=np.zeros(n, int),
+        gains=np.ones((n, WIDTH)), packed=np.zeros(3, int), holders=np.zeros(n, int), lasts=np.zeros(2, int),
+        rooms=np.zeros(2, int),
         active=np.zeros(3, int), awake=np.zeros(2, int), met=np.zeros(2, np.int8), stirred=np.zeros(3, np.int8),
         trifles=np.zeros(3), slips=np.zeros(n), states=np.full(n, STICKS, np.int8), pushes=np.zeros((3, 6)),
         motions=np.zeros(0), lifts=np.zeros(0), strained=None,
