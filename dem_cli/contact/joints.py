@@ -197,6 +197,7 @@ def joints_of(
         kn=(kn * areas)[owners] * shares,
         ks=(ks * areas)[owners] * shares,
         law=properties.law_of(named, kn),
+        held=np.full(len(blocks), -1),
     )
 
 

@@ -74,6 +74,8 @@ def points(
         normals=np.ascontiguousarray(normals.reshape(-1, 6)),
         tangents=np.ascontiguousarray(model.faces.first_sides[faces.faces[:, 0]]),
         markers=np.full((n, 6), np.nan),
+        apart=np.full((n, 3), np.nan),
+        opened=np.zeros(n_points),
         scales=_scales(model, faces, properties, caps.corners),
         edges=edges,
         types=np.zeros(n_points, np.int8),

@@ -31,7 +31,8 @@ def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0, moves: bool =
     return Bodies(
         positions, orientations, np.zeros((n, n_dof)), np.zeros((n, n_dof)), np.zeros((n, n_dof)),
         world_corners(shape, positions, orientations), turns, mobilities(shape.inertias, shape.axes, turns),
-        np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n), **_unstrained(model),
+        np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n * n_dof), np.zeros(n),
+        poses=orientations.copy(), turned=np.zeros(n, np.int8), **_unstrained(model),
     )  # fmt: skip
 
 

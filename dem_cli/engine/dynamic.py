@@ -154,6 +154,8 @@ class DynamicSimulation(Simulation):
             rates=np.zeros((n, d)),
             gains=np.ones((n, GAINS[d])),
             packed=np.zeros(len(joints.blocks) + 1, dtype=np.int64),
+            lasts=np.zeros(len(joints.blocks), dtype=np.int64),
+            rooms=np.zeros(len(joints.blocks), dtype=np.int64),
             holders=np.zeros(n, dtype=np.int64),
             active=np.zeros(len(joints.blocks) + 1, dtype=np.int64),
             awake=np.zeros(len(joints.blocks), dtype=np.int64),

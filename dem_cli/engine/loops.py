@@ -43,7 +43,7 @@ def _in_plane(law: Law, profiled: bool, **flags: bool) -> Callable:
     return (make_profiled_forces if profiled else make_planar_forces)(law.function, law.bonded, **flags)
 
 
-def _in_space(law: Law, profiled: bool, **flags: bool) -> Callable:
+def _in_space(law: Law, profiled: bool, keeps: bool = False, **flags: bool) -> Callable:
     return make_spatial_forces(law.function, law.bonded, remembers=law.n_memory(3), capped=profiled, **flags)
 
 

@@ -15,6 +15,7 @@ from dem_cli.kernels.spin import (
     combined,
     half_turn,
     midpoint,
+    note_turn,
     principal_axes,
     store_mobility,
     store_turn,
@@ -211,6 +212,7 @@ def drift_tumbling(bodies, shape, dt, like):
         if moments[0] == 0.0:
             turn_further(orientations, i, half_turn(spin, dt))
             store_turn(turns, i, orientations)
+            note_turn(bodies, i)
             continue
         principal = principal_axes(turns, axes, i)
         before = along(principal, spin)
@@ -218,6 +220,7 @@ def drift_tumbling(bodies, shape, dt, like):
         turn = combined(principal, turn)
         turn_further(orientations, i, turn)
         store_turn(turns, i, orientations)
+        note_turn(bodies, i)
         principal = principal_axes(turns, axes, i)
         # By what has changed alone: axes that are not quite square, to round-off, would gain or lose in each step.
         change = combined(principal, scale(2.0, axpy(-1.0, before, mean)))

@@ -13,6 +13,7 @@ import numpy as np
 from dem_cli.kernels.fixed_joints import FixedJoints
 
 NO_MODES = np.zeros((0, 0))
+NOTHING, NO_JOINTS = np.zeros(0, np.int8), np.zeros(0, np.int64)
 
 
 class Bodies(NamedTuple):
@@ -34,6 +35,9 @@ class Bodies(NamedTuple):
     pulled: np.ndarray  # velocities before the dashpots of a step, then after all of it, before blocks turn on,
     # (n_blocks·n_dof,)
     travel: np.ndarray  # bound of how far any corner moved since detection [m], (n_blocks,)
+    # For joints in space that hold their geometry (kernels/spatial_forces.py):
+    poses: np.ndarray = NO_MODES  # orientations from which turns count, as `orientations`
+    turned: np.ndarray = NOTHING  # 1: has turned from there by what joints notice, and there it is now, (n_blocks,)
     # Of blocks that deform (model/uniform_strain.py), else empty:
     modes: np.ndarray = NO_MODES  # amplitudes [m], (n_blocks, m)
     gradients: np.ndarray = NO_MODES  # deformation gradients R (I + ε), row by row, (n_blocks, d·d)
@@ -69,6 +73,7 @@ class MovingJoints(NamedTuple):
     kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
+    held: np.ndarray = NO_JOINTS  # in space: points that touch, n; −1 − n where geometry was just measured, (n_joints,)
 
     @property
     def owners(self) -> np.ndarray:
@@ -169,6 +174,8 @@ class SpatialMotion(NamedTuple):
     normals: np.ndarray  # outward unit normals of both, each in the frame of its block, (n_joints, 6)
     tangents: np.ndarray  # what shear is counted along, in the frame of block a, (n_joints, 3)
     markers: np.ndarray  # two corners of face b in the frame of block a, at the last renewal [m], (n_joints, 6)
+    apart: np.ndarray  # from centroid b to a when geometry was measured that may be held, else nan [m], (n_joints, 3)
+    opened: np.ndarray  # by how much a point opened since the step before it was measured [m], (n_points,)
     scales: np.ndarray  # columns as in spatial_points.py, (n_joints, 9)
     edges: (
         np.ndarray
@@ -202,7 +209,8 @@ class SpatialMotion(NamedTuple):
     def kept(self) -> SpatialMotion:
         """The same with a copy of what changes."""
         changing = ("features", "markers", "types", "corners", "shares", "spans", "arms")
-        return self._replace(**{name: getattr(self, name).copy() for name in changing})
+        unmeasured = np.full_like(self.apart, np.nan)
+        return self._replace(apart=unmeasured, **{name: getattr(self, name).copy() for name in changing})
 
 
 CORNER_OF_B, CORNER_OF_A, CROSSING, FIXED_TO_B = 0, 1, 2, 3  # of SpatialMotion.types
@@ -269,7 +277,9 @@ class Dampers(NamedTuple):
     rates: np.ndarray  # opening and sliding before the step [m/s], where elements ask for it, (n_points, d)
     gains: np.ndarray  # what a turn reads, of the points that touch one behind another, columns as in dashpots.py,
     # (n_points, 16), in space as in spatial_dashpots.py, (n_points, 18)
-    packed: np.ndarray  # the rows packed[j]:packed[j + 1] of `gains` are of joint j, (n_joints + 1,)
+    packed: np.ndarray  # in the plane the rows packed[j]:packed[j + 1] of `gains` are of joint j, (n_joints + 1,)
+    lasts: np.ndarray  # in space these are packed[j]:lasts[j], and packed[-1] the first row that is free, (n_joints,)
+    rooms: np.ndarray  # how many they may become where they are, (n_joints,)
     holders: np.ndarray  # and these the points of the rows, (n_points,)
     active: np.ndarray  # joints that have rows; the last entry is how many they are, (n_joints + 1,)
     awake: np.ndarray  # those of them that are swept once more, (n_joints,)

@@ -3,6 +3,7 @@
 An impulse J gives up S (w₀ + w + C⁻¹ J), S = (C⁻¹ + K)⁻¹ along the axes of the world, K rates by impulses at the point,
 C half of damping × step; it goes no lower than its bound by moving along S n. A point that slips has S = s n nᵀ. While
 sweeps last, velocities are sums of those before and after the step, so that w₀ + w is one rate and nothing else.
+Joints that hold their geometry (spatial_forces.py) keep their rows while the same points touch, stick and slip.
 """
 
 from __future__ import annotations
@@ -12,9 +13,8 @@ import numpy as np
 from dem_cli.kernels.dashpots import (
     OPEN,
     SLIPS,
-    begin_joint,
+    STICKS,
     closed_share,
-    end_joint,
     forget,
     least_of,
     make_turns,
@@ -37,8 +37,8 @@ from dem_cli.kernels.jit import always_inline, inline, overload
 from dem_cli.kernels.joint_plane import load_mobility, moment, rates_at, spun, sweep
 from dem_cli.kernels.vec import add_at, axpy, components, compose, dot, load, load_frame, norm, scale, store
 
-# Columns of Dampers.gains: n, place, J, S (xx xy xz yy yz zz), C⁻¹ = EVENLY + ACROSS n nᵀ, least J·n.
-NORMAL, PLACE, IMPULSE, GAIN, EVENLY, ACROSS, LEAST = 0, 3, 6, 9, 15, 16, 17
+# Columns of Dampers.gains: n, arm from a, J, S (xx xy xz yy yz zz), C⁻¹ = EVENLY + ACROSS n nᵀ, least J·n.
+NORMAL, ARM, IMPULSE, GAIN, EVENLY, ACROSS, LEAST = 0, 3, 6, 9, 15, 16, 17
 WIDTH = 18
 GAINS = {2: PLANAR_WIDTH, 3: WIDTH}  # columns by dimension
 
@@ -145,9 +145,77 @@ def given_up(rows, row, normal, impulse, rate):
     return axpy(short / dot(normal, way), way, free)
 
 
+@always_inline
+def _goes_on(joints, contacts, dampers, joint):
+    """Whether the rows of a joint are those of its points now: geometry is held, the same points touch, stick and slip.
+
+    Points that have met in the step before act for all of this one.
+    """
+    states, first, last = dampers.states, dampers.packed[joint], dampers.lasts[joint]
+    if last - first != joints.held[joint] or dampers.met[joint] != 0:
+        return False
+    for row in range(first, last):
+        point = np.uint64(dampers.holders[row])
+        state = STICKS if contacts.slip[point] == dampers.slips[point] else SLIPS
+        if contacts.normal[point] == 0.0 or states[point] != state:
+            return False
+    return True
+
+
+@always_inline
+def _touching(held):
+    """How many points of a joint touch, whether its geometry is held or was just measured."""
+    return held if held >= 0 else -1 - held
+
+
+@inline
+def _make_room(joints, dampers):
+    """Begins with the first row again, for all joints, where those that may come now have no room any more."""
+    needed = dampers.packed[-1]
+    for joint in range(joints.held.shape[0]):
+        needed += _touching(joints.held[joint])
+    if needed > dampers.gains.shape[0]:
+        dampers.packed[:], dampers.lasts[:], dampers.rooms[:] = 0, 0, 0
+
+
+@always_inline
+def _first_row(joints, dampers, joint):
+    """Where the rows of a joint go that are made anew: where they were, or where nothing is yet."""
+    packed, n = dampers.packed, _touching(joints.held[joint])
+    if n > dampers.rooms[joint]:
+        packed[joint], dampers.rooms[joint] = packed[-1], n
+        packed[-1] += n
+    return packed[joint]
+
+
+@always_inline
+def _push_on(joints, contacts, bodies, dampers, dt, joint, a, b, like):
+    """Impulses of rows that go on, as far as they may, onto the blocks."""
+    rows, holders, slips, seen = dampers.gains, dampers.holders, contacts.slip, dampers.slips
+    pushed, turned = scale(0.0, like), scale(0.0, like)
+    for number in range(dampers.packed[joint], dampers.lasts[joint]):
+        row = np.uint64(number)
+        point = np.uint64(holders[row])
+        seen[point] = slips[point]
+        normal, impulse = load(rows, row, NORMAL, like), load(rows, row, IMPULSE, like)
+        least = least_of(contacts.normal[point], dt)
+        rows[row, LEAST] = least
+        short = least - dot(normal, impulse)
+        if short > 0.0:
+            impulse = axpy(short, normal, impulse)
+            store(rows, row, IMPULSE, impulse)
+        pushed = axpy(1.0, impulse, pushed)
+        turned = axpy(1.0, moment(load(rows, row, ARM, like), impulse), turned)
+    apart = axpy(-1.0, load(bodies.positions, b, 0, like), load(bodies.positions, a, 0, like))
+    add_at(dampers.pushes, a, 0, pushed, -1.0)
+    add_at(dampers.pushes, b, 0, pushed, 1.0)
+    add_at(dampers.pushes, a, 3, turned, -1.0)
+    add_at(dampers.pushes, b, 3, axpy(1.0, moment(apart, pushed), turned), 1.0)
+
+
 @inline
 def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
-    """As dashpots.meet_in_plane; rows of `gains` for the points that touch, those of joint j from packed[j] on."""
+    """As dashpots.meet_in_plane; rows of joint j from packed[j] up to lasts[j]. Those that go on are not made anew."""
     blocks, starts, kns, kss, frames = joints.blocks, joints.starts, joints.kn, joints.ks, joints.frames
     normals, memory, slips = contacts.normal, contacts.memory, contacts.slip
     positions, velocities = bodies.positions, bodies.velocities
@@ -155,12 +223,20 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
     states, seen, first, pushes = dampers.states, dampers.slips, dampers.first, dampers.pushes
     pushes[:] = 0.0
     motions, lifts = dampers.motions, dampers.lifts
-    elements, n_met, n_rows, n_active = dampers.elements, 0, 0, 0
+    elements, packed, lasts, n_met, n_active = dampers.elements, dampers.packed, dampers.lasts, 0, 0
+    _make_room(joints, dampers)
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
+        if elements.shape[0] == 0 and _goes_on(joints, contacts, dampers, joint):
+            if lasts[joint] > packed[joint]:
+                _push_on(joints, contacts, bodies, dampers, dt, joint, a, b, like)
+                dampers.active[n_active] = number
+                n_active += 1
+            continue
         half, masses = 0.5 * viscosity[joint] * dt, inverse_masses[a, 0] + inverse_masses[b, 0]
-        begin_joint(dampers, joint, n_rows)
+        dampers.met[joint] = 0
+        n_rows = _first_row(joints, dampers, joint)
         mobilities = (load_mobility(bodies.mobilities, a, like), load_mobility(bodies.mobilities, b, like))
         xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
         spin_a, spin_b = load(velocities, a, 3, like_rotation), load(velocities, b, 3, like_rotation)
@@ -199,7 +275,7 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
                 n_rows += 1
                 holders[row] = point
                 store(rows, row, NORMAL, frame[0])
-                store(rows, row, PLACE, place)
+                store(rows, row, ARM, arms[0])
                 store(rows, row, IMPULSE, impulse)
                 rows[row, LEAST] = least
                 viscous = (share * half * kns[point], share * half * kss[point])
@@ -217,8 +293,11 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
             add_at(pushes, b, 0, pushed, 1.0)
             add_at(pushes, a, 3, turned_a, -1.0)
             add_at(pushes, b, 3, turned_b, 1.0)
-        n_active = end_joint(dampers, joint, n_rows, n_active)
-    dampers.packed[blocks.shape[0]], dampers.active[blocks.shape[0]] = n_rows, n_active
+        lasts[joint] = n_rows
+        if n_rows > packed[joint]:
+            dampers.active[n_active] = number
+            n_active += 1
+    dampers.active[blocks.shape[0]] = n_active
     return n_met
 
 
@@ -233,19 +312,20 @@ def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, swept, n,
     for i in range(n):
         number = swept[n - 1 - i if backwards else i]
         joint = np.uint64(number)
-        low, high, change = packed[joint], packed[number + 1], 0.0
+        low, high, change = packed[joint], dampers.lasts[joint], 0.0
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
         mass_a, mass_b = inverse_masses[a, 0], inverse_masses[b, 0]
         mobility_a = load_mobility(bodies.mobilities, a, like)
         mobility_b = load_mobility(bodies.mobilities, b, like)
         xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
+        apart = axpy(-1.0, xb, xa)
         va, vb = load(velocities, a, 0, like), load(velocities, b, 0, like)
         spin_a, spin_b = load(velocities, a, 3, like_rotation), load(velocities, b, 3, like_rotation)
         for j in range(high - low):
             row = np.uint64(high - 1 - j if backwards else low + j)
-            normal, place = load(rows, row, NORMAL, like), load(rows, row, PLACE, like)
-            impulse = load(rows, row, IMPULSE, like)
-            arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
+            normal, impulse = load(rows, row, NORMAL, like), load(rows, row, IMPULSE, like)
+            arm_a = load(rows, row, ARM, like)
+            arm_b = axpy(1.0, apart, arm_a)
             turning = axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b))
             rate = plus_modes(motions, velocities, holders[row], a, b, axpy(1.0, turning, axpy(-1.0, va, vb)))
             new = given_up(rows, row, normal, impulse, rate)
@@ -274,7 +354,7 @@ turns_in_space = make_turns(_sweep_in_space)
 @inline
 def resist_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation):
     """As `resist`; bodies.means: velocities before the step."""
-    if dampers.packed[-1] == 0:
+    if dampers.active[-1] == 0:
         return
     velocities, pushes, old = bodies.velocities, dampers.pushes, bodies.means
     n_dof = velocities.shape[1]

@@ -1,11 +1,13 @@
 """The loop over joints in space whose geometry moves: points renewed where they are due, gaps first, then forces.
 
 Each point has the normal of its feature (spatial_features.py); shear is counted along a direction fixed in block a, so
-that two blocks that turn together keep their forces.
+that two blocks that turn together keep their forces. In time histories a joint holds normals and places of its points
+while its blocks hardly turn or move against each other: gaps grow by the rate of opening then, as slips do.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -13,17 +15,73 @@ import numpy as np
 from dem_cli.kernels.contact_point import make_press, meeting, push_apart
 from dem_cli.kernels.deformation.matrices import load_matrix, times
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
-from dem_cli.kernels.jit import inline, kernel, named
+from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.joint_plane import moment, sweep
+from dem_cli.kernels.records import FACES
 from dem_cli.kernels.renewal import MOST_LEFT, is_due, renew
+from dem_cli.kernels.separation import minus3, row3
 from dem_cli.kernels.spatial_features import feature_of, frame_of, on_cap, tangents3
-from dem_cli.kernels.vec import axpy, compose, dot, load, scale
+from dem_cli.kernels.spatial_points import SIZE
+from dem_cli.kernels.vec import axpy, compose, dot, load, load_frame, scale, store
+
+HOLDS = 1e-3  # sine of the angle between faces up to which a joint may hold its geometry
+SHIFT = 1e-5  # of its size: by so much its blocks may move against each other meanwhile
+
+
+@kernel
+def _measure(joint, joints, geometry, contacts, bodies, remembers, bonded, capped, holds):
+    """Frames, places and gaps of the points of a joint where its blocks are now; renewed first where that is due.
+
+    capped: joints may have caps; holds: what is found may be held from now on.
+    """
+    frames, places, gaps, normals = joints.frames, joints.points, contacts.gaps, contacts.normal
+    a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
+    first, last = joints.starts[joint], joints.starts[joint + 1]
+    if is_due(geometry, bodies, joint, a):
+        loaded = False
+        for point in range(first, last):
+            loaded = loaded or normals[point] != 0.0
+        if renew(joint, joints, geometry, contacts, bodies, remembers, bonded, False) == 0 and loaded:
+            contacts.stale[joint] = 1
+            contacts.stale[-1] = 1
+    frame, along = frame_of(geometry, bodies, joint, a, b)
+    for point in range(first, last):
+        if joints.kn[point] == 0.0:
+            continue
+        normal, gap, place = feature_of(geometry, bodies, joint, point, a, b, frame)
+        if capped:
+            gap, place = on_cap(geometry, bodies, joint, point, gap, place, frame)
+        geometry.opened[point] = gap - gaps[point]
+        gaps[point] = gap
+        t1, t2 = tangents3(normal, along)
+        for k in range(3):
+            frames[point, k], frames[point, 3 + k], frames[point, 6 + k] = normal[k], t1[k], t2[k]
+            places[point, k] = place[k]
+    tilt, apart = axpy(-1.0, frame[0], frame[1]), minus3(row3(bodies.positions, a), row3(bodies.positions, b))
+    plain = geometry.kinds[joint] == FACES and geometry.rises[joint] == 0.0 and dot(tilt, tilt) <= HOLDS * HOLDS
+    for k in range(3):
+        geometry.apart[joint, k] = apart[k] if holds and plain else math.nan
+
+
+@always_inline
+def measure(joint, joints, geometry, contacts, bodies, remembers, bonded, capped, holds):
+    """As _measure, for the loops that are made for a law (renewal.renew says why)."""
+    _measure(np.int64(joint), joints, geometry, contacts, bodies, remembers, bonded, capped, holds)
+
+
+@always_inline
+def _keeps(geometry, bodies, joint, a, b):
+    """Whether the blocks of a joint have hardly moved against each other, nor turned, since it was measured."""
+    if bodies.turned[a] != 0 or bodies.turned[b] != 0:
+        return False
+    apart = minus3(row3(bodies.positions, a), row3(bodies.positions, b))
+    moved, far = minus3(apart, row3(geometry.apart, joint)), SHIFT * geometry.scales[joint, SIZE]
+    return dot(moved, moved) <= far * far
 
 
 def make_spatial_forces(
     law: Callable,
     bonded: bool = False,
-    keeps: bool = False,
     meets: bool = False,
     rigid: bool = False,
     remembers: int = 0,
@@ -32,79 +90,79 @@ def make_spatial_forces(
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
-    keeps: frames and places of the points that touch are kept up to date, for dampers. meets, rigid: as in
-    planar_forces.py. remembers: numbers of a point's memory that belong to the law. capped: joints may have caps.
-    strains: blocks deform (kernels/deformation); their faces stay plane.
+    meets: in time histories; geometry is held there while blocks hardly move. rigid: as in planar_forces.py.
+    remembers: numbers of a point's memory that belong to the law. capped: joints may have caps. strains: blocks deform
+    (kernels/deformation); their faces stay plane, and geometry is measured in each step.
     """
     assert remembers <= MOST_LEFT
-    press = make_press(law, bonded)
+    press, holds = make_press(law, bonded), meets and not strains
 
     @inline
     def spatial_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
         """Adds the forces of all joints on their blocks to `forces`; returns the friction work [J]."""
         blocks, starts, stiffness = joints.blocks, joints.starts, joints.kn
         frames, places = joints.frames, joints.points
-        gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure
+        gaps, normals, closures = contacts.gaps, contacts.normal, contacts.closure
         velocities, forces, positions = bodies.velocities, bodies.forces, bodies.positions
         stretchings, d = bodies.stretchings, len(like)
         lost = 0.0
         for number in range(blocks.shape[0]):
             joint = np.uint64(number)
             a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
-            if is_due(geometry, bodies, joint, a):
-                loaded = False
-                for point in range(starts[joint], starts[number + 1]):
-                    loaded = loaded or normals[point] != 0.0
-                if renew(joint, joints, geometry, contacts, bodies, remembers, bonded, False) == 0 and loaded:
-                    stale[joint] = 1
-                    stale[-1] = 1
-            frame, along = frame_of(geometry, bodies, joint, a, b)
+            held = holds and _keeps(geometry, bodies, joint, a, b)
+            if not held:
+                measure(number, joints, geometry, contacts, bodies, remembers, bonded, capped, holds)
             spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
-            relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
+            va = load(velocities, a, 0, like)
+            relative = axpy(-1.0, va, load(velocities, b, 0, like))
             xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
             force, torque_a, torque_b = scale(0.0, like), scale(0.0, like_rotation), scale(0.0, like_rotation)
             if strains:
                 gradient_a, gradient_b = load_matrix(stretchings, a, like), load_matrix(stretchings, b, like)
-            loaded = False
+            n_loaded, n_touch = 0, 0
             for p in range(starts[joint], starts[number + 1]):
                 point = np.uint64(p)
                 if stiffness[point] == 0.0:
                     continue
-                normal, gap, place = feature_of(geometry, bodies, joint, point, a, b, frame)
-                if capped:
-                    gap, place = on_cap(geometry, bodies, joint, point, gap, place, frame)
-                opened = gap - gaps[point]
-                gaps[point] = gap
+                place = load(places, point, 0, like)
+                if held:
+                    place = axpy(dt, va, place)
+                    store(places, point, 0, place)
+                frame = load_frame(frames, point, like)
+                arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
+                moved = axpy(1.0, axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b)), relative)
+                if strains:
+                    moved = axpy(1.0, axpy(-1.0, times(gradient_a, arm_a), times(gradient_b, arm_b)), moved)
+                if held:
+                    opened = dt * dot(moved, frame[0])
+                    gap = gaps[point] + opened
+                    gaps[point] = gap
+                else:
+                    opened, gap = geometry.opened[point], gaps[point]
                 if meets and not bonded:
                     gap = meeting(gap, opened)
                 if rigid:
                     gap -= closures[point]
                 if not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
-                loaded = True
-                t1, t2 = tangents3(normal, along)
-                arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
-                moved = axpy(1.0, axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b)), relative)
-                if strains:
-                    moved = axpy(1.0, axpy(-1.0, times(gradient_a, arm_a), times(gradient_b, arm_b)), moved)
-                slide = (dt * dot(moved, t1), dt * dot(moved, t2))
-                if keeps:
-                    for k in range(3):
-                        frames[point, k], frames[point, 3 + k], frames[point, 6 + k] = normal[k], t1[k], t2[k]
-                        places[point, k] = place[k]
+                n_loaded += 1
+                slide = (dt * dot(moved, frame[1]), dt * dot(moved, frame[2]))
                 pressed, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
+                n_touch += 1 if pressed != 0.0 else 0
                 lost += work
-                pushed = compose((normal, t1, t2), pressed, shear, scale(0.0, like))
+                pushed = compose(frame, pressed, shear, scale(0.0, like))
                 force = axpy(1.0, pushed, force)
                 torque_a = axpy(1.0, moment(arm_a, pushed), torque_a)
                 torque_b = axpy(1.0, moment(arm_b, pushed), torque_b)
                 if strains:
                     stretch_apart(bodies.dyads, a, b, pushed, arm_a, arm_b)
-            if loaded:
+            if meets:
+                joints.held[joint] = n_touch if held else -1 - n_touch
+            if n_loaded > 0:
                 push_apart(forces, a, b, force, torque_a, torque_b)
         return lost
 
-    flags = {"bonded": bonded, "keeps": keeps, "meets": meets, "rigid": rigid, "capped": capped}
+    flags = {"bonded": bonded, "meets": meets, "rigid": rigid, "capped": capped}
     flags |= {"strains": strains}
     return named(spatial_forces, law, *(name if on else "" for name, on in flags.items()), str(remembers))
 

@@ -19,6 +19,7 @@ from dem_cli.kernels.jit import always_inline, inline, overload
 from dem_cli.kernels.vec import axpy, dot, load, load_frame, norm, scale
 
 ITERATIONS = 8  # of the midpoint, at most; each gains as many digits as a step turns by less than a radian
+HELD = 2e-6  # rad: what touches a block that turned by less since then is where it was
 CHANGE = 1e-30  # of |w|²: smaller changes of the midpoint, squared, are round-off
 
 
@@ -67,6 +68,19 @@ def turn_further(orientations, row, turn):
     inverse = 1.0 / math.sqrt(w * w + x * x + y * y + z * z)
     orientations[row, 0], orientations[row, 1] = inverse * w, inverse * x
     orientations[row, 2], orientations[row, 3] = inverse * y, inverse * z
+
+
+@always_inline
+def note_turn(bodies, row):
+    """Notes whether a block has turned by more than HELD since this was last so."""
+    now, then, change = bodies.orientations, bodies.poses, 0.0
+    for k in range(4):
+        change = max(change, abs(now[row, k] - then[row, k]))
+    bodies.turned[row] = 0
+    if not change <= 0.5 * HELD:
+        bodies.turned[row] = 1
+        for k in range(4):
+            then[row, k] = now[row, k]
 
 
 @always_inline

@@ -32,7 +32,7 @@ def scene(n_points: int = 4, viscosity: float = 1.0, seed: int = 5):
     joints = SimpleNamespace(
         blocks=np.array([[0, 1], [1, 2]]), starts=np.array([0, n_points, n]), kn=rng.uniform(1e3, 4e3, n),
         ks=rng.uniform(1e3, 4e3, n), frames=np.array([turned(rng).ravel() for _ in range(n)]),
-        levers=np.zeros((n, 18)), points=rng.uniform(-1.0, 1.0, (n, 3)),
+        levers=np.zeros((n, 18)), points=rng.uniform(-1.0, 1.0, (n, 3)), held=np.full(2, -1 - n_points),
     )  # fmt: skip
     bodies = SimpleNamespace(
         positions=rng.uniform(-1.0, 1.0, (3, 3)), velocities=rng.uniform(-1.0, 1.0, (3, 6)), forces=np.zeros((3, 6)),
@@ -44,7 +44,8 @@ def scene(n_points: int = 4, viscosity: float = 1.0, seed: int = 5):
     )  # fmt: skip
     dampers = SimpleNamespace(
         first=0, viscosity=np.full(2, viscosity), elements=np.zeros((0, 2)), rates=np.zeros((n, 3)),
-        gains=np.ones((n, WIDTH)), packed=np.zeros(3, int), holders=np.zeros(n, int),
+        gains=np.ones((n, WIDTH)), packed=np.zeros(3, int), holders=np.zeros(n, int), lasts=np.zeros(2, int),
+        rooms=np.zeros(2, int),
         active=np.zeros(3, int), awake=np.zeros(2, int), met=np.zeros(2, np.int8), stirred=np.zeros(3, np.int8),
         trifles=np.zeros(3), slips=np.zeros(n), states=np.full(n, STICKS, np.int8), pushes=np.zeros((3, 6)),
         motions=np.zeros(0), lifts=np.zeros(0), strained=None,
@@ -194,6 +195,27 @@ def test_open_slots_hold_nothing():
     step(joints, bodies, contacts, inverse, dampers, 2, np.zeros((3, 6)))
     assert (bodies.velocities == before).all()
     assert (contacts.memory == 0.0).all()
+
+
+def test_rows_that_move_to_and_fro_change_nothing():
+    """Points come and go, so that joints need more room than they have, until all begin with the first row again."""
+    rng = np.random.default_rng(2)
+    old = scene(viscosity=0.05)
+    starts = []
+    for _ in range(12):
+        joints, bodies, contacts, _, dampers = old
+        touching = rng.random(len(joints.kn)) < 0.6
+        contacts.normal[:] = np.where(touching, 1e9, 0.0)
+        joints.held[:] = -1 - touching.reshape(2, -1).sum(axis=1)
+        new = scene(viscosity=0.05)
+        new[1].velocities[:], new[2].normal[:], new[2].memory[:] = bodies.velocities, contacts.normal, contacts.memory
+        new[4].states[:], new[0].held[:] = dampers.states, joints.held
+        for each in (old, new):
+            step(*each, 1, np.full((3, 6), 0.1))
+        assert (new[1].velocities == bodies.velocities).all()
+        assert (new[2].memory == contacts.memory).all()
+        starts.append(dampers.packed[0])
+    assert starts[-1] < max(starts) > 0
 
 
 def test_impulses_take_energy_whatever_the_stiffness():
