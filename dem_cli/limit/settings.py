@@ -30,7 +30,7 @@ class PathSettings:
     # Under dead loads alone: first products in those that are set, and folds.
     easier: tuple[tuple[float, int], ...] = ((1.0, 0), (1e2, 0), (1.0, 4), (1e2, 4), (1e4, 4))
     effort: float = 2e7  # factorisations × points before giving up: about half a minute
-    smoothed_effort: float = 5e9  # the same of a path that is smoothed, × points to the power of 1.5: some 90 s
+    smoothed_effort: float = 6.5e9  # the same of a path that is smoothed, × points to the power of 1.5: some 90 s
     large: int = 1600  # blocks of one structure, beyond which the path is smoothed, and where it ends is the answer
     large_in_space: int = 1000  # the same in 3D, where it is not smoothed
     most: int = 2500  # factorisations before giving up
