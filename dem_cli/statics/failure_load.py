@@ -330,11 +330,14 @@ class LoadSearch:
         Small steps come to where larger ones did, each by a share of what any equilibrium took so far. Of a large
         structure, whose failure took so long to show, a lower load takes longer still.
         """
-        steps = {state: [each.steps for each in self.answer.passes if each.state == state and each.kind == "load"]
-                 for state in ("equilibrium", "failure")}  # fmt: skip
         if trials.to_come:
-            return trials.to_come * self.settings.least_of_fewest * min(steps["equilibrium"], default=0)
-        return steps["failure"][-1] if self.large and trials.high is not None else 0
+            return trials.to_come * self.settings.least_of_fewest * min(self._taken("equilibrium"), default=0)
+        failures = self._taken("failure")  # none, where limit analysis alone proved one
+        return failures[-1] if failures and self.large and trials.high is not None else 0
+
+    def _taken(self, state: str) -> list[int]:
+        """Steps of the loads that were raised and ended so."""
+        return [each.steps for each in self.answer.passes if each.kind == "load" and each.state == state]
 
     def _try_crept(self, trials: TrialLoads) -> None:
         """The equilibrium of the creep, where it is inside the bracket: closer to failure, if it holds as well."""

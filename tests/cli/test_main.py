@@ -192,27 +192,20 @@ def test_want_of_memory_is_no_fault(command, monkeypatch):
     assert (result.exit_code, result.stderr) == (3, said)
 
 
+def in_bash(line: str) -> subprocess.CompletedProcess:
+    """`dem` and what a shell does with its output."""
+    words = ["bash", "-c", f'set -o pipefail; "{sys.executable}" -m dem_cli {line}']
+    return subprocess.run(words, capture_output=True, text=True, timeout=60, env=ENVIRONMENT)
+
+
 def test_a_reader_that_goes_away_is_no_error():
-    line = f'"{sys.executable}" -m dem_cli schema | head -n 1'
-    result = subprocess.run(
-        ["bash", "-c", f"set -o pipefail; {line}"],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        env=ENVIRONMENT,
-    )
+    result = in_bash("schema | head -n 1")
     assert (result.stdout, result.stderr) == ("{\n", "")
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is full")
 def test_a_full_disk_below_what_is_printed_is_no_fault():
-    result = subprocess.run(
-        ["bash", "-c", f'"{sys.executable}" -m dem_cli schema > /dev/full'],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        env=ENVIRONMENT,
-    )
+    result = in_bash("schema > /dev/full")
     said = "error: cannot print to the standard output: no space left on device\n"
     assert (result.returncode, result.stderr) == (3, said)
 

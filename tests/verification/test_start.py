@@ -60,6 +60,18 @@ def test_large_structures_go_on_from_where_their_smoothed_path_ends(steps):
     assert summary["histories"][0]["method"] == "zero-dilation path"
 
 
+def test_a_large_structure_that_is_tried_at_its_bound():
+    """A first step beyond the bound: limit analysis proves that failure, and says nothing of how long others take."""
+    search = replace(DEFAULT.load_search, step_of_large=2.0)
+    path = replace(DEFAULT.limit.path, large=50)
+    settings = replace(DEFAULT, limit=replace(DEFAULT.limit, path=path), load_search=search)
+    summary = run("wall_21", "structure.0.courses=10", "structure.0.blocks_per_course=10", settings=settings)
+    assert [each["kind"] for each in summary["search"][:3]] == ["start", "impossible", "load"]
+    low, high = summary["failure_load_bracket"]
+    assert low == pytest.approx(0.55666, rel=3e-3)
+    assert low < high <= 0.5637
+
+
 def test_large_structures_in_space_go_on_from_where_their_path_ends():
     """The path is that under the exact law, as far as it came; raised from gravity 0.6460 to 0.6464."""
     path = replace(DEFAULT.limit.path, large_in_space=10)
