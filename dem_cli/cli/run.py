@@ -64,6 +64,10 @@ class TerminalListener(RunListener):
         self.bar.stop()
         console.note(f"the first {duration(seconds)} of work are kept; go on with --resume", self.quiet)
 
+    def stages_not_kept(self, why: str) -> None:
+        """A line on stderr."""
+        console.note(f"nothing more of this run is kept for --resume: {why}", self.quiet)
+
 
 @click.command("run")
 @case_argument

@@ -79,7 +79,7 @@ def stages_of(
     what = cache(lambda: facts(case, text))
     checkpoints = Checkpoints(folder.path.parent, folder.final.name, what, options.resume)
     try:
-        recorder.keep(KeptStages(checkpoints, recorder.tell, options.keeping))
+        recorder.keep(KeptStages(checkpoints, recorder.tell_again, options.keeping))
         yield checkpoints
     except KeyboardInterrupt:
         stages_left(checkpoints, recorder.listener)

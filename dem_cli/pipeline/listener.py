@@ -30,3 +30,6 @@ class RunListener:
 
     def stages_kept(self, seconds: float) -> None:
         """A run was interrupted; so much of its work is kept for `resume`."""
+
+    def stages_not_kept(self, why: str) -> None:
+        """Nothing more of the run is kept for `resume`."""

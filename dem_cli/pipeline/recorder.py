@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from dem_cli.interrupts import look
 from dem_cli.output.record import Observer
+from dem_cli.output.resume.kept_values import Damaged
 
 if TYPE_CHECKING:
     from dem_cli.contact.drawn_joints import DrawnJoints
@@ -24,6 +25,11 @@ def joints_of(model: Model) -> DrawnJoints:
     return DrawnJoints(model)
 
 
+TOLD = {  # what the files are told, and of which class it is
+    "frame": "Frame", "row": "HistoryRow", "samples": "Samples", "structure": "Model", "runs": "RunRow",
+}  # fmt: skip
+
+
 class Recorder(Observer):
     """The observer of a run: keeps what comes, and says where the run stands."""
 
@@ -35,11 +41,18 @@ class Recorder(Observer):
     def keep(self, stages: KeptStages) -> None:
         """From now on they are told what goes into the files, for a run that goes on from there."""
         self.stages = self._noted = stages
-        stages.goes_on = self.goes_on
+        stages.goes_on, stages.gives_up = self.goes_on, self.listener.stages_not_kept
 
     def tell(self, kind: str, record: Any) -> None:
         """Into the files: a "frame", "row", "samples", "structure" or "runs"."""
         getattr(self.writer, kind)(record)
+
+    def tell_again(self, kind: str, record: Any) -> None:
+        """As `tell`, what an interrupted run told. Raises Damaged where no run tells that."""
+        each = record if kind == "runs" and isinstance(record, (list, tuple)) else (record,)
+        if not all(type(one).__name__ == TOLD.get(kind) for one in each):
+            raise Damaged(f"the results are told a {type(record).__name__}")
+        self.tell(kind, record)
 
     def _tell(self, kind: str, record: Any) -> None:
         self.tell(kind, record)

@@ -2,24 +2,23 @@
 
 A class of things that change while a solver works says in LASTING which of its attributes stay the objects that they
 are: the model of a simulation, the simulation of a track. Everything else of it is kept, so that a new attribute cannot
-be forgotten. The bytes are those of pickle, held to data: classes of this package, arrays, plain containers.
+be forgotten. The bytes are data (kept_values.py), and what they hold goes only where there is the like of it.
 """
 
 from __future__ import annotations
 
-import io
-import pickle
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Protocol
 
-_DATA = {
-    "builtins": {"set", "frozenset", "complex", "slice"},
-    "copyreg": {"_reconstructor"},
-    "numpy": {"ndarray", "dtype"},
-}
-_ARRAYS = ("numpy._core.", "numpy.core.")  # as numpy 2 and 1 call it
-_OF_ARRAYS = {"_reconstruct", "scalar", "_frombuffer"}
+import numpy as np
+
+from dem_cli.output.resume.kept_values import Damaged, packed, unpacked
+
 _PLAIN = (type(None), bool, int, float, complex, str, bytes, tuple, frozenset)  # which others may share by chance
+_NUMBERS = (bool, int, float, np.number, np.bool_)
+_OF_JOINTS = frozenset((  # records whose arrays have rows of joints and points, of which there may be others by now
+    "Chains", "Caps", "Contacts", "Dampers", "MovingJoints", "PlanarGeometry", "SpatialGeometry", "SpatialMotion",
+))  # fmt: skip
 _known: dict[type, bool] = {}  # which classes change
 
 
@@ -50,23 +49,54 @@ def all_changing(objects: Iterable[Any]) -> list[Changing]:
 
 
 def encoded(changing: list[Changing], more: Any) -> bytes:
-    """What changes of some objects, and more data that may refer to them."""
-    stream = io.BytesIO()
+    """What changes of some objects, and more data that may refer to them. Raises NotKept."""
     names = {id(value): name for name, value in _names(changing).items()}
-    pickler = _Pickler(stream, protocol=5)
-    pickler.names = names
-    pickler.dump(([_state(one) for one in changing], more))
-    return stream.getvalue()
+    return packed(([_state(one) for one in changing], more), names)
 
 
 def decoded(data: bytes, changing: list[Changing]) -> Any:
-    """Puts back what `encoded` kept of the same objects, and gives the other data."""
-    unpickler = _Unpickler(io.BytesIO(data))
-    unpickler.names = _names(changing)
-    states, more = unpickler.load()
+    """Puts back what `encoded` kept of the same objects, and gives the other data. Raises Damaged: nothing is put."""
+    found = unpacked(data, _names(changing))
+    if not (type(found) is tuple and len(found) == 2 and type(found[0]) is list and len(found[0]) == len(changing)):
+        raise Damaged("it is of other objects")
+    states, more = found
+    for one, state in zip(changing, states, strict=True):
+        check_like(one, state)
     for one, state in zip(changing, states, strict=True):
         put_back(one, state)
     return more
+
+
+def check_like(one: Any, state: Any) -> None:
+    """Raises Damaged where a kept state is not that of such an object."""
+    if type(state) is not dict:
+        raise Damaged(f"no state of {type(one).__name__}")
+    lasting, here = getattr(one, "LASTING", frozenset()), vars(one)
+    for name, value in state.items():
+        if not isinstance(name, str) or name in lasting or callable(getattr(type(one), name, None)):
+            raise Damaged(f"{name!r} is nothing that changes of {type(one).__name__}")
+        if name in here and not _alike(here[name], value):
+            raise Damaged(f"{name} of {type(one).__name__} is of another kind")
+    missing = here.keys() - state.keys() - lasting
+    if missing:
+        raise Damaged(f"{sorted(missing)[0]} of {type(one).__name__} is missing")
+
+
+def _alike(here: Any, kept: Any, rows: bool = False) -> bool:
+    """Whether a kept value may stand in the place of one that is there; rows: maybe of other joints."""
+    if here is None or kept is here:
+        return True
+    if isinstance(here, _NUMBERS):
+        return isinstance(kept, _NUMBERS)
+    if type(kept) is not type(here):
+        return False
+    if isinstance(here, np.ndarray):
+        of_rows = here.ndim == kept.ndim and (here.shape[1:] == kept.shape[1:] if rows else here.shape == kept.shape)
+        return here.dtype == kept.dtype and of_rows
+    if isinstance(here, tuple):
+        rows = rows or type(here).__name__ in _OF_JOINTS
+        return len(here) == len(kept) and all(_alike(a, b, rows) for a, b in zip(here, kept, strict=True))
+    return not hasattr(here, "__dict__") or all(_alike(a, vars(kept).get(name)) for name, a in vars(here).items())
 
 
 def put_back(one: Any, state: Mapping[str, Any]) -> None:
@@ -93,27 +123,3 @@ def _names(changing: list[Changing]) -> dict[str, Any]:
         found[str(number)] = one
         found |= {f"{number}.{name}": value for name, value in _lasting(one) if type(value) not in _PLAIN}
     return found
-
-
-class _Pickler(pickle.Pickler):
-    names: Mapping[int, str]
-
-    def persistent_id(self, one: Any) -> str | None:
-        return self.names.get(id(one))
-
-
-class _Unpickler(pickle.Unpickler):
-    names: Mapping[str, Any]
-
-    def persistent_load(self, name: str) -> Any:
-        return self.names[name]
-
-    def find_class(self, module: str, name: str) -> Any:
-        """Classes of this package and what arrays are made of; nothing else is called."""
-        of_arrays = module.startswith(_ARRAYS) and name in _OF_ARRAYS
-        if of_arrays or name in _DATA.get(module, ()):
-            return super().find_class(module, name)
-        found = super().find_class(module, name) if module.startswith("dem_cli.") else None
-        if not isinstance(found, type):
-            raise pickle.UnpicklingError(f"{module}.{name} is no data")
-        return found

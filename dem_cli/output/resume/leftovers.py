@@ -1,12 +1,63 @@
-"""Leftovers of an interrupted run: whether the run that finds them may go on from there, and the words where not."""
+"""Leftovers of an interrupted run: how they are opened, whether the run that finds them may go on, the words where not.
+
+Who made them is not known: they are read as data, and only as plain files where they lie.
+"""
 
 from __future__ import annotations
 
+import errno
+import json
+import os
+import stat
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from dem_cli.errors import UsageError
+
+
+_NO_FILE = (errno.ELOOP, errno.EISDIR, errno.ENXIO)
+_AS_IT_IS = getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+
+
+def opened(path: Path, flags: int) -> int:
+    """A plain file, by the flags of `os.open`; never what a link leads to, nor a pipe that nobody writes.
+
+    Raises UsageError where it is something else, and OSError.
+    """
+    try:
+        file = os.open(path, flags | _AS_IT_IS, 0o644)
+    except OSError as error:
+        if error.errno in _NO_FILE:
+            raise damaged(path, "it is no plain file") from None
+        raise
+    if not stat.S_ISREG(os.fstat(file).st_mode):
+        os.close(file)
+        raise damaged(path, "it is no plain file")
+    return file
+
+
+def read_at(file: int, begin: int, length: int) -> bytes:
+    """So many bytes of a file from a place on; fewer where it ends before."""
+    os.lseek(file, begin, os.SEEK_SET)
+    parts = []
+    while length > 0 and (part := os.read(file, min(length, 1 << 26))):
+        parts.append(part)
+        length -= len(part)
+    return b"".join(parts)
+
+
+def parsed(text: bytes) -> Any:
+    """What a text of JSON says; None where it is none."""
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+
+
+def damaged(path: Path, why: str) -> UsageError:
+    """That nobody can go on from what is there."""
+    return UsageError(f"{path}: is damaged; delete it to start anew ({why})")
 
 
 def fits(

@@ -28,7 +28,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, ParamSpec, TypeVar
 
 from dem_cli.errors import SolverError
 from dem_cli.interrupts import asked
-from dem_cli.output.resume.kept_objects import Changing, all_changing, decoded, encoded, put_back
+from dem_cli.output.resume.kept_objects import Changing, all_changing, check_like, decoded, encoded, put_back
+from dem_cli.output.resume.kept_values import Damaged, NotKept
 
 if TYPE_CHECKING:
     from dem_cli.output.resume.checkpoints import Checkpoints
@@ -115,12 +116,14 @@ class _Checkpoint(NamedTuple):
 class KeptStages(Stages):
     """Stages of a run, kept in a folder.
 
-    tell: hands what was told before on to the results.
+    tell: hands what was told before on to the results; raises Damaged where nobody tells them such a thing.
     """
 
     def __init__(self, kept: Checkpoints, tell: Callable[[str, Any], None], keeping: Keeping = DEFAULT_KEEPING) -> None:
         self.kept, self.tell, self.keeping = kept, tell, keeping
         self.goes_on: Callable[[], None] = lambda: None  # who hears that work goes on
+        self.gives_up: Callable[[str], None] = lambda why: None  # who hears that nothing more is kept, and why
+        self._over = False
         self._say_next = 0.0
         self._now = time.monotonic
         self._begun = self._now()
@@ -137,14 +140,33 @@ class KeptStages(Stages):
     def note(self, kind: str, record: Any) -> None:
         """Something was told to the results."""
         self._told += 1
-        if self._told > len(self._places) + len(self._waiting):
+        if not self._over and self._told > len(self._places) + len(self._waiting):
             self._waiting.append((kind, record))
 
     def _tell_again(self, until: int) -> None:
         """What a stage told that is not done again."""
+        if until < self._told:
+            raise self.kept.damaged("more was told before")
         for data in self.kept.told_at(self._places[self._told : until]):
-            self.tell(*decoded(data, []))
+            kind, record, *more = (*self._decoded(data, [], tuple), None, None)
+            if len(more) != 2:
+                raise self.kept.damaged("something was told of no kind")
+            self._unless_damaged(partial(self.tell, kind, record))
         self._told = until
+
+    def _decoded(self, data: bytes, changing: list[Changing], kind: type[Any]) -> Any:
+        """As `decoded`, of such a kind. Raises UsageError where it is no data, or of another one."""
+        found = self._unless_damaged(lambda: decoded(data, changing))
+        if type(found) is not kind:
+            raise self.kept.damaged(f"a {kind.__name__} is missing")
+        return found
+
+    def _unless_damaged(self, work: Callable[[], Found]) -> Found:
+        """What work gives. Raises UsageError where it finds that what is kept is no such thing."""
+        try:
+            return work()
+        except Damaged as error:
+            raise self.kept.damaged(error) from None
 
     # -- stages ------------------------------------------------------------------------------------
 
@@ -189,6 +211,7 @@ class KeptStages(Stages):
             return False
         under_way.inside = known.inside
         if loop is not None:
+            self._unless_damaged(lambda: check_like(loop, known.loop))
             put_back(loop, known.loop)
         return True
 
@@ -210,30 +233,39 @@ class KeptStages(Stages):
 
     def _write(self, name: str, under_way: _UnderWay, what: _Outcome | _Checkpoint) -> bool:
         """Keeps a stage or a checkpoint, with all that was told; not after an interrupt, of which it may be the end."""
-        if asked():
+        if asked() or self._over:
             return False
         begun = self._now()
-        self._places += self.kept.tell([encoded([], entry) for entry in self._waiting])
-        self._waiting.clear()
-        state = encoded(under_way.changing, what)
         seconds = self.before + begun - self._begun
-        self.kept.write(name, encoded([], (under_way.name, self._told, state)), seconds)
+        try:
+            entries = [encoded([], entry) for entry in self._waiting]
+            state = encoded([], (under_way.name, self._told, encoded(under_way.changing, what)))
+            self._places += self.kept.tell(entries)
+            self._waiting.clear()
+            self.kept.write(name, state, seconds)
+        except NotKept as error:  # a fault of the program, for which nobody loses a run
+            self._over = True
+            self._waiting.clear()
+            self.gives_up(str(error))
+            return False
         self._names.add(name)
         self._cost = self._now() - begun
         return True
 
     def _read(self, name: str, under_way: _UnderWay, kind: type[Any]) -> Any:
-        """A kept stage or checkpoint, put back; None where there is none."""
+        """A kept stage or checkpoint, put back; None where there is none. Raises UsageError."""
         data = self.kept.read(name) if name in self._names else None
         if data is None:
             return None
-        of, told, state = decoded(data, [])
+        header = self._decoded(data, [], tuple)
+        if [type(each) for each in header] != [str, int, bytes]:
+            raise self.kept.damaged("a state without a name")
+        of, told, state = header
         if of != under_way.name or told > len(self._places):  # another way, or lost: nothing is of this run
             self._drop(list(self._names))
             self._places = self.kept.only(self._places[: self._told])
             return None
-        found = decoded(state, under_way.changing)
-        assert isinstance(found, kind)
+        found = self._decoded(state, under_way.changing, kind)
         self._tell_again(told)
         return found
 
