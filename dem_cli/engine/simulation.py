@@ -12,6 +12,7 @@ from dem_cli.contact.detect import block_shape
 from dem_cli.contact.joints import JointArrays, JointGeometry, JointProperties, points_in_use
 from dem_cli.contact.start import bodies_at_rest
 from dem_cli.engine.fictitious_masses import fictitious_masses
+from dem_cli.engine.kept_scene import guard_of
 from dem_cli.engine.loads import loads_of
 from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.placement.clearances import play_of_start
@@ -247,6 +248,10 @@ class Simulation:
     def __getstate__(self) -> dict[str, Any]:
         """What a copy takes along: not the compiled code that this one is bound to."""
         return self.__dict__ | {"_scene": (None,), "_loop": None, "_stiff": (None,)}
+
+    def guard_of_kept(self) -> Callable[[Any], None]:
+        """What looks at the state of a checkpoint that came back to it (engine/kept_scene.py)."""
+        return guard_of(self)
 
     def compile(self) -> None:
         """Compile or load the stepping loop; no step is done."""

@@ -124,6 +124,7 @@ ALLOWED: dict[str, set[str] | None] = {
         "laws",
         "model",
         "output.record",
+        "output.resume.likeness",
         "output.resume.stages",
         "tables",
         "links",

@@ -7,18 +7,14 @@ be forgotten. The bytes are data (kept_values.py), and what they hold goes only 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any, Protocol
 
-import numpy as np
-
+from dem_cli.output.resume.likeness import alike
 from dem_cli.output.resume.kept_values import Damaged, packed, unpacked
 
 _PLAIN = (type(None), bool, int, float, complex, str, bytes, tuple, frozenset)  # which others may share by chance
-_NUMBERS = (bool, int, float, np.number, np.bool_)
-_OF_JOINTS = frozenset((  # records whose arrays have rows of joints and points, of which there may be others by now
-    "Chains", "Caps", "Contacts", "Dampers", "MovingJoints", "PlanarGeometry", "SpatialGeometry", "SpatialMotion",
-))  # fmt: skip
 _known: dict[type, bool] = {}  # which classes change
 
 
@@ -55,16 +51,37 @@ def encoded(changing: list[Changing], more: Any) -> bytes:
 
 
 def decoded(data: bytes, changing: list[Changing]) -> Any:
-    """Puts back what `encoded` kept of the same objects, and gives the other data. Raises Damaged: nothing is put."""
-    found = unpacked(data, _names(changing))
+    """Puts back what `encoded` kept of the same objects, and gives the other data. Raises Damaged.
+
+    Objects that have a `guard_of_kept` look at what came back to them, and at records that have a geometry.
+    """
+    records: list[Any] = []
+    found = unpacked(data, _names(changing), records.append)
     if not (type(found) is tuple and len(found) == 2 and type(found[0]) is list and len(found[0]) == len(changing)):
         raise Damaged("it is of other objects")
     states, more = found
     for one, state in zip(changing, states, strict=True):
         check_like(one, state)
+    guards = [one.guard_of_kept() for one in changing if hasattr(one, "guard_of_kept")]
     for one, state in zip(changing, states, strict=True):
         put_back(one, state)
+    try:
+        for guard in guards:
+            guard(None)
+        for record in records:
+            if guards and hasattr(record, "geometry"):
+                _accepted(record, guards)
+    except ValueError as error:
+        raise Damaged(str(error)) from None
     return more
+
+
+def _accepted(record: Any, guards: list[Callable[[Any], None]]) -> None:
+    """Raises ValueError where a record is of none of several scenes."""
+    for guard in guards[:-1]:
+        with suppress(ValueError):
+            return guard(record)
+    guards[-1](record)
 
 
 def check_like(one: Any, state: Any) -> None:
@@ -75,28 +92,11 @@ def check_like(one: Any, state: Any) -> None:
     for name, value in state.items():
         if not isinstance(name, str) or name in lasting or callable(getattr(type(one), name, None)):
             raise Damaged(f"{name!r} is nothing that changes of {type(one).__name__}")
-        if name in here and not _alike(here[name], value):
+        if name in here and not alike(here[name], value):
             raise Damaged(f"{name} of {type(one).__name__} is of another kind")
     missing = here.keys() - state.keys() - lasting
     if missing:
         raise Damaged(f"{sorted(missing)[0]} of {type(one).__name__} is missing")
-
-
-def _alike(here: Any, kept: Any, rows: bool = False) -> bool:
-    """Whether a kept value may stand in the place of one that is there; rows: maybe of other joints."""
-    if here is None or kept is here:
-        return True
-    if isinstance(here, _NUMBERS):
-        return isinstance(kept, _NUMBERS)
-    if type(kept) is not type(here):
-        return False
-    if isinstance(here, np.ndarray):
-        of_rows = here.ndim == kept.ndim and (here.shape[1:] == kept.shape[1:] if rows else here.shape == kept.shape)
-        return here.dtype == kept.dtype and of_rows
-    if isinstance(here, tuple):
-        rows = rows or type(here).__name__ in _OF_JOINTS
-        return len(here) == len(kept) and all(_alike(a, b, rows) for a, b in zip(here, kept, strict=True))
-    return not hasattr(here, "__dict__") or all(_alike(a, vars(kept).get(name)) for name, a in vars(here).items())
 
 
 def put_back(one: Any, state: Mapping[str, Any]) -> None:

@@ -49,15 +49,20 @@ def packed(value: Any, names: Mapping[int, str] | None = None) -> bytes:
     return b"".join([_LENGTH.pack(len(text)), text, *packing.numbers])
 
 
-def unpacked(data: bytes, named: Mapping[str, Any] | None = None) -> Any:
-    """The value that `packed` made bytes of. named: objects by the names that they had. Raises Damaged."""
+def unpacked(
+    data: bytes, named: Mapping[str, Any] | None = None, see: Callable[[Any], None] = lambda record: None
+) -> Any:
+    """The value that `packed` made bytes of. Raises Damaged.
+
+    named: objects by the names that they had; see: is shown each record that is made.
+    """
     try:
         (length,) = _LENGTH.unpack_from(data)
         begin = _LENGTH.size + length
         if length > MOST_TEXT or begin > len(data):
             raise Damaged("its text is not there")
         node = json.loads(data[_LENGTH.size : begin].decode("utf-8", "surrogatepass"), parse_constant=_no_number)
-        unpacking = _Unpacking(memoryview(data)[begin:], named or {})
+        unpacking = _Unpacking(memoryview(data)[begin:], named or {}, see)
         value = unpacking.value(node, 0)
         if unpacking.at != len(unpacking.numbers):
             raise Damaged("it holds more than it names")
@@ -126,8 +131,8 @@ class _Packing:
 class _Unpacking:
     """Bytes on their way to a value."""
 
-    def __init__(self, numbers: memoryview, named: Mapping[str, Any]):
-        self.numbers, self.named, self.at = numbers, named, 0
+    def __init__(self, numbers: memoryview, named: Mapping[str, Any], see: Callable[[Any], None]):
+        self.numbers, self.named, self.see, self.at = numbers, named, see, 0
         self._objects: list[Any] = []
 
     def value(self, node: Any, depth: int) -> Any:
@@ -217,6 +222,7 @@ class _Unpacking:
             raise Damaged(f"no {of.__name__}")
         _check(of, dict(zip(of._fields, values, strict=True)))  # type: ignore[attr-defined]
         self._objects[number] = found = tuple.__new__(of, values)
+        self.see(found)
         return found
 
     def _object(self, number: int, parts: list[Any], depth: int) -> Any:
@@ -227,6 +233,7 @@ class _Unpacking:
         state = dict(self._pairs(parts[1:], depth))
         _check(of, state)
         vars(found).update(state)
+        self.see(found)
         return found
 
 

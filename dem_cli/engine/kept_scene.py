@@ -1,0 +1,153 @@
+"""Whether a scene that was read from a checkpoint is one that compiled loops may work on.
+
+They follow numbers of blocks, joints, points and corners without a look at how many there are. So no number from a file
+gets there that leads out of its array: rows are counted, numbers are held to what they count, and what stays the same
+through a run is compared with what this run has built itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dem_cli.kernels.fixed_joints import FixedJoints
+from dem_cli.kernels.tiles.joint_tiles import tiled
+from dem_cli.output.resume.likeness import alike
+
+if TYPE_CHECKING:
+    from dem_cli.engine.simulation import Simulation
+
+_ROWS: dict[str, dict[str, str]] = {  # fields of records by how many rows they have; of those with "?" maybe none
+    "MovingJoints": {"joints": "blocks law", "points": "frames levers points kn ks", "joints?": "held"},
+    "FixedJoints": {"joints": "blocks law axes anchors arms", "points": "places kn ks"},
+    "PlanarGeometry": {"joints": "keys edges scales", "points": "features", "points?": "profile", "joints?": "sunk"},
+    "SpatialGeometry": {
+        "joints": "keys kinds corners areas", "points": "features", "joints?": "axes", "points?": "places gaps",
+    },
+    "SpatialMotion": {
+        "joints": "keys kinds faces normals tangents markers apart scales edges rises slopes",
+        "points": "features opened types corners shares spans arms", "ends": "cap_starts", "caps": "cap_arms cap_areas",
+    },
+    "Contacts": {"points": "gaps shear normal slip memory closure", "ends": "stale"},
+    "Dampers": {
+        "joints": "viscosity lasts rooms awake met", "ends": "packed active",
+        "points?": "rates gains holders slips states motions lifts",
+    },
+}  # fmt: skip
+_NUMBERS: dict[str, dict[str, str]] = {  # fields by what their numbers are of; with "!" the number of all is one, too
+    "MovingJoints": {"blocks": "blocks"},
+    "FixedJoints": {"blocks": "blocks"},
+    "PlanarGeometry": {"faces": "keys", "corners": "edges"},
+    "SpatialGeometry": {"faces": "keys", "kinds": "kinds", "points!": "corners"},
+    "SpatialMotion": {
+        "parts": "keys", "kinds": "kinds types", "faces": "faces", "corners": "edges corners found",
+        "points": "taken heirs",
+    },
+    "Dampers": {"points!": "packed lasts rooms holders", "joints!": "active awake", "kinds": "states"},
+}  # fmt: skip
+_NONE_IS_ONE = frozenset(("edges", "corners", "found", "taken", "heirs"))  # −1: none
+_CONSTANT = ("face_starts", "face_corners", "part_starts", "part_edges", "part_sides")  # of SpatialMotion
+_ROOM = ("found", "labels", "numbers", "taken", "heirs")
+_N_KINDS, _MOST_THREADS = 4, 4096
+
+
+def guard_of(sim: Simulation) -> Callable[[Any], None]:
+    """Looks at `sim`, once a kept state is in it (None), or at a saved state beside. Raises ValueError: it is unfit."""
+    before, bodies, links, chains = sim.tracking.arrays(), sim.bodies, sim.links, sim.tracking.chains
+
+    def check(saved: Any | None) -> None:
+        one = saved or sim.tracking
+        _check_rows(sim, before, one)
+        _alike_or_raise(bodies, getattr(one, "bodies", bodies))
+        if saved is not None:
+            return
+        _same(links, sim.links)
+        _same(chains, sim.tracking.chains)
+        if dampers := getattr(sim, "dampers", None):
+            _check_record(dampers, _counts(sim, sim.joints))
+            _require(0 <= dampers.first <= sim.contacts.memory.shape[1], "Dampers.first")
+
+    return check
+
+
+def _counts(sim: Simulation, joints: Any) -> dict[str, int]:
+    """How many of each there are."""
+    topology, n_points = sim.model.topology, int(joints.starts[-1])
+    return {
+        "joints": len(joints.blocks), "ends": len(joints.blocks) + 1, "points": n_points, "blocks": sim.model.n_blocks,
+        "parts": sim.model.n_parts, "faces": topology.n_faces, "corners": len(sim.model.vertices), "kinds": _N_KINDS,
+    }  # fmt: skip
+
+
+def _check_rows(sim: Simulation, before: Any, one: Any) -> None:
+    """Joints, geometry and contacts of a state. before: those that this run has."""
+    for name in before._fields:
+        _alike_or_raise(getattr(before, name), getattr(one, name), rows=True)
+    joints, geometry = one.joints, one.geometry
+    _check_starts(joints.starts, len(joints.blocks), len(joints.kn))
+    counts = _counts(sim, joints)
+    if isinstance(joints, FixedJoints):
+        _same(before.joints[:-1], joints[:-1])
+        _check_tiles(sim, joints)
+    elif len(joints.held):
+        touching, most = np.where(joints.held < 0, -1 - joints.held, joints.held), np.diff(joints.starts)
+        _require(bool((touching <= most).all()), "MovingJoints.held")
+    if type(geometry).__name__ == "SpatialMotion":
+        counts["caps"] = int(geometry.cap_starts[-1])
+        _check_starts(geometry.cap_starts, counts["joints"], counts["caps"])
+        _same([getattr(before.geometry, name) for name in _CONSTANT], [getattr(geometry, name) for name in _CONSTANT])
+        room = 2 * int(np.diff(joints.starts).max(initial=0)) + 2
+        rows = {len(getattr(geometry, name)) for name in _ROOM} | {geometry.work.shape[1]}
+        _require(len(rows) == 1 and min(rows) >= room and len(geometry.work) == len(before.geometry.work), "room")
+    for record in (joints, geometry, one.contacts):
+        _check_record(record, counts)
+
+
+def _check_record(record: Any, counts: Mapping[str, int]) -> None:
+    name = type(record).__name__
+    for count, fields in _ROWS[name].items():
+        for field in fields.split():
+            n = len(getattr(record, field))
+            _require(n == counts[count.rstrip("?")] or (count.endswith("?") and n == 0), f"{name}.{field}")
+    for count, fields in _NUMBERS.get(name, {}).items():
+        most = counts[count.rstrip("!")] + count.endswith("!")
+        for field in fields.split():
+            numbers, least = getattr(record, field), -1 if field in _NONE_IS_ONE else 0
+            _require(numbers.min(initial=0) >= least and numbers.max(initial=-1) < most, f"{name}.{field}")
+
+
+def _check_starts(starts: np.ndarray, n: int, last: int) -> None:
+    whole = starts.shape == (n + 1,) and starts[0] == 0 and starts[-1] == last
+    _require(whole and bool((starts[1:] >= starts[:-1]).all()), "starts")
+
+
+def _check_tiles(sim: Simulation, joints: FixedJoints) -> None:
+    """Tiles are those of these joints; room has nothing in it that is read."""
+    threads, model, tiles = len(joints.tiles.controls), sim.model, joints.tiles
+    _require(0 < threads <= _MOST_THREADS, "tiles")
+    if len(tiles.joints) or sim.tiled:
+        made = tiled(joints.blocks, joints.starts, model.n_blocks, model.dimension, sim.law.n_of_lanes, threads)
+        layout = slice(made._fields.index("ends"))
+        _same(made[layout], tiles[layout])
+        _alike_or_raise(made, tiles)
+
+
+def _same(here: Any, kept: Any) -> None:
+    """Of records of arrays, the same numbers that count, and as many others."""
+    _alike_or_raise(here, kept)
+    for a, b in zip(here or (), kept or (), strict=True):
+        if isinstance(a, tuple):
+            _same(a, b)
+        elif isinstance(a, np.ndarray) and a.dtype.kind in "iu":
+            _require(bool((a == b).all()), "what stays the same")
+
+
+def _alike_or_raise(here: Any, kept: Any, rows: bool = False) -> None:
+    _require(alike(here, kept, rows), type(here).__name__)
+
+
+def _require(fits: bool, what: str) -> None:
+    if not fits:
+        raise ValueError(f"{what} is not of this structure")
