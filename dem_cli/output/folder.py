@@ -91,7 +91,7 @@ def write_error(error: Exception, path: Path) -> DemError:
 def _own_summary(folder: Path) -> dict[str, object] | None:
     try:
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return None
     return summary if isinstance(summary, dict) and summary.keys() >= OWN_KEYS else None
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from dem_cli.output.resume.stages import DEFAULT_KEEPING, Keeping
@@ -49,13 +50,15 @@ def batch_of(
     if not many(case):
         yield None
         return
-    from dem_cli.ensembles.batch import Batch
+    from dem_cli.ensembles.batch import Batch, ShakenRunResult, ShakingTrial
     from dem_cli.output.resume.journal import Journal
     from dem_cli.sweep.identity import facts
 
-    with Journal(folder.path.parent, folder.final.name, facts(case, text), options.resume) as journal:
+    what, of = facts(case, text), (ShakingTrial, ShakenRunResult)
+    with Journal(folder.path.parent, folder.final.name, what, options.resume, of) as journal:
         try:
-            yield Batch(options.threads or usable_cores(), journal)
+            with _sound(journal.path, lambda: bool(journal.known())):
+                yield Batch(options.threads or usable_cores(), journal)
         except KeyboardInterrupt:
             left(journal, listener)
             raise
@@ -79,13 +82,32 @@ def stages_of(
     what = cache(lambda: facts(case, text))
     checkpoints = Checkpoints(folder.path.parent, folder.final.name, what, options.resume)
     try:
-        recorder.keep(KeptStages(checkpoints, recorder.tell_again, options.keeping))
-        yield checkpoints
+        stages = KeptStages(checkpoints, recorder.tell_again, options.keeping)
+        recorder.keep(stages)
+        with _sound(checkpoints.path, lambda: stages.went_on):
+            yield checkpoints
     except KeyboardInterrupt:
         stages_left(checkpoints, recorder.listener)
         raise
     finally:
         checkpoints.close()
+
+
+@contextmanager
+def _sound(path: Path, went_on: Callable[[], bool]) -> Iterator[None]:
+    """Says of a run that went on from what was kept, and failed as no run should, what else may be wrong than dem."""
+    from dem_cli.errors import DemError
+    from dem_cli.output.resume.leftovers import damaged
+
+    try:
+        yield
+    except DemError:
+        raise
+    except Exception as error:
+        if not went_on():
+            raise
+        lines = str(error).splitlines() or [""]
+        raise damaged(path, f"a run that went on from it failed: {type(error).__name__}: {lines[0]}") from error
 
 
 def finish(batch: Batch, summary: dict[str, Any], listener: RunListener) -> None:

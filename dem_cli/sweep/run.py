@@ -142,7 +142,7 @@ def summary_in(folder: Path) -> Summary | None:
     """The summary of a run that came to its end, be it failure."""
     try:
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return None
     whole = isinstance(summary, dict) and summary.keys() >= OWN_KEYS and isinstance(summary["status"], str)
     return summary if whole and summary["status"] != "interrupted" else None

@@ -21,8 +21,8 @@ from typing import Any
 
 from dem_cli.errors import UsageError
 from dem_cli.output.folder import CHECKPOINTS, locked, write_error
-from dem_cli.output.resume.leftovers import damaged, fits, in_use, opened, parsed, read_at
 from dem_cli.output.resume.kept_values import NotKept
+from dem_cli.output.resume.leftovers import damaged, fits, in_use, opened, parsed, read_at
 
 _FORMAT = 2
 MOST_BYTES = 1 << 31  # of a state, and of an entry of what was told

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from typing import Any, Protocol
 
-from dem_cli.output.resume.likeness import alike
 from dem_cli.output.resume.kept_values import Damaged, packed, unpacked
+from dem_cli.output.resume.likeness import alike
 
 _PLAIN = (type(None), bool, int, float, complex, str, bytes, tuple, frozenset)  # which others may share by chance
 _known: dict[type, bool] = {}  # which classes change
@@ -88,7 +88,8 @@ def check_like(one: Any, state: Any) -> None:
     """Raises Damaged where a kept state is not that of such an object."""
     if type(state) is not dict:
         raise Damaged(f"no state of {type(one).__name__}")
-    lasting, here = getattr(one, "LASTING", frozenset()), vars(one)
+    lasting: frozenset[str] = getattr(one, "LASTING", frozenset())
+    here = vars(one)
     for name, value in state.items():
         if not isinstance(name, str) or name in lasting or callable(getattr(type(one), name, None)):
             raise Damaged(f"{name!r} is nothing that changes of {type(one).__name__}")

@@ -1,14 +1,15 @@
 """Records that may stand in a checkpoint: the classes, by the names that they have there, and what their fields take.
 
 A class that is not named here is neither kept nor made. One is made without a call of it, from fields that are looked
-at first.
+at first. Its module is imported when a checkpoint holds one: names alone point from here to where the solvers are.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -65,25 +66,51 @@ _TAKES: dict[str, tuple[type, ...]] = {  # by the word of an annotation; any oth
 }
 
 
+class Field(NamedTuple):
+    """What a field takes."""
+
+    kinds: tuple[type, ...]
+    items: tuple[type, ...] | None  # of which all items of a list or a tuple are; None: anything
+
+    def takes(self, value: Any) -> bool:
+        """Whether it takes a value."""
+        if self.items is not None and isinstance(value, (tuple, list)):
+            return isinstance(value, self.kinds) and all(isinstance(each, self.items) for each in value)
+        return isinstance(value, self.kinds)
+
+
 def unfit(of: type, fields: Mapping[Any, Any]) -> str | None:
     """What is wrong with the fields of such a record; None: nothing."""
-    takes = _annotated(of)
+    annotated = _annotated(of)
     for name, value in fields.items():
         if not isinstance(name, str) or callable(getattr(of, name, None)) or name.startswith("__"):
             return f"{name!r} is no field"
-        if name in takes and not isinstance(value, takes[name]):
-            return f"{name} is no {' or '.join(each.__name__ for each in takes[name])}"
-    missing = takes.keys() - fields.keys()
+        if name in annotated and not annotated[name].takes(value):
+            return f"{name} may not be a {type(value).__name__}"
+    missing = annotated.keys() - fields.keys()
     return f"{sorted(missing)[0]} is missing" if missing else None
 
 
 @cache
-def _annotated(of: type) -> dict[str, tuple[type, ...]]:
-    """What the annotated fields of a class take, those of its bases too; no field of which that is not known."""
+def _annotated(of: type) -> dict[str, Field]:
+    """Annotated fields of a class and its bases, but for those of which it is not known what they take."""
     found = {}
     for base in reversed(of.__mro__):
         for name, annotation in vars(base).get("__annotations__", {}).items():
-            words = [word.partition("[")[0].strip() for word in str(annotation).split("|")]
-            if all(word in _TAKES or word in RECORDS for word in words):
-                found[name] = tuple(kind for word in words for kind in _TAKES.get(word) or (RECORDS[word],))
+            said = getattr(annotation, "__forward_arg__", str(annotation))
+            kinds = [_kinds(word) for word in said.split("|")]
+            if "ClassVar" not in said and all(kinds):
+                found[name] = Field(tuple(each for kind in kinds for each in kind), _items(said))
     return found
+
+
+def _kinds(word: str) -> tuple[type, ...]:
+    """Classes that a word of an annotation takes; none where that is not known."""
+    name = word.partition("[")[0].strip()
+    return _TAKES.get(name) or ((RECORDS[name],) if name in RECORDS else ())
+
+
+def _items(annotation: str) -> tuple[type, ...] | None:
+    """Of which the items of a plain list or tuple are: list[float], tuple[str, ...]."""
+    found = re.fullmatch(r"(?:list\[|tuple\[)([\w.]+)(?:, \.\.\.)?\]", annotation)
+    return (_kinds(found[1]) or None) if found else None

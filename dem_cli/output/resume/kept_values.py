@@ -14,7 +14,7 @@ import json
 import struct
 from collections.abc import Callable, Mapping
 from math import isfinite, prod
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -43,7 +43,9 @@ class Damaged(ValueError):
 def packed(value: Any, names: Mapping[int, str] | None = None) -> bytes:
     """A value as bytes. names: of objects that are only named, by their id. Raises NotKept."""
     packing = _Packing(names or {})
-    text = json.dumps(packing.node(value, 0), ensure_ascii=False, separators=(",", ":")).encode("utf-8", "surrogatepass")
+    text = json.dumps(packing.node(value, 0), ensure_ascii=False, separators=(",", ":")).encode(
+        "utf-8", "surrogatepass"
+    )
     if len(text) > MOST_TEXT:
         raise NotKept(f"{len(text):,} bytes of plain values are more than the {MOST_TEXT:,} that are kept")
     return b"".join([_LENGTH.pack(len(text)), text, *packing.numbers])
@@ -123,7 +125,7 @@ class _Packing:
     def _array(self, value: np.ndarray) -> list[Any]:
         if value.dtype.str not in _DTYPES:
             raise NotKept(f"an array of {value.dtype} is not kept")
-        order = "F" if value.flags.f_contiguous and not value.flags.c_contiguous else "C"
+        order: Literal["C", "F"] = "F" if value.flags.f_contiguous and not value.flags.c_contiguous else "C"
         self.numbers.append(value.tobytes(order))
         return ["array", value.dtype.str, list(value.shape), order, value.flags.writeable]
 

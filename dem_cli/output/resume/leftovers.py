@@ -15,7 +15,6 @@ from typing import Any
 
 from dem_cli.errors import UsageError
 
-
 _NO_FILE = (errno.ELOOP, errno.EISDIR, errno.ENXIO)
 _AS_IT_IS = getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
 

@@ -124,6 +124,7 @@ class KeptStages(Stages):
         self.goes_on: Callable[[], None] = lambda: None  # who hears that work goes on
         self.gives_up: Callable[[str], None] = lambda why: None  # who hears that nothing more is kept, and why
         self._over = False
+        self.went_on = False  # whether anything was put back
         self._say_next = 0.0
         self._now = time.monotonic
         self._begun = self._now()
@@ -148,10 +149,10 @@ class KeptStages(Stages):
         if until < self._told:
             raise self.kept.damaged("more was told before")
         for data in self.kept.told_at(self._places[self._told : until]):
-            kind, record, *more = (*self._decoded(data, [], tuple), None, None)
-            if len(more) != 2:
+            told = self._decoded(data, [], tuple)
+            if [type(each) for each in told[:1]] != [str] or len(told[1:]) != 1:
                 raise self.kept.damaged("something was told of no kind")
-            self._unless_damaged(partial(self.tell, kind, record))
+            self._unless_damaged(partial(self.tell, *told))
         self._told = until
 
     def _decoded(self, data: bytes, changing: list[Changing], kind: type[Any]) -> Any:
@@ -265,6 +266,7 @@ class KeptStages(Stages):
             self._drop(list(self._names))
             self._places = self.kept.only(self._places[: self._told])
             return None
+        self.went_on = True
         found = self._decoded(state, under_way.changing, kind)
         self._tell_again(told)
         return found
