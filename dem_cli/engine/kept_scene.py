@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.kernels.fixed_joints import FixedJoints
-from dem_cli.kernels.tiles.joint_tiles import tiled
+from dem_cli.kernels.tiles.joint_tiles import NO_TILES, tiled
 from dem_cli.output.resume.likeness import alike
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ _ROWS: dict[str, dict[str, str]] = {  # fields of records by how many rows they 
     "SpatialMotion": {
         "joints": "keys kinds faces normals tangents markers apart scales edges rises slopes",
         "points": "features opened types corners shares spans arms", "ends": "cap_starts", "caps": "cap_arms cap_areas",
+        "room": "found labels numbers taken heirs",
     },
     "Contacts": {"points": "gaps shear normal slip memory closure", "ends": "stale"},
     "Dampers": {
@@ -49,25 +50,26 @@ _NUMBERS: dict[str, dict[str, str]] = {  # fields by what their numbers are of; 
 }  # fmt: skip
 _NONE_IS_ONE = frozenset(("edges", "corners", "found", "taken", "heirs"))  # −1: none
 _CONSTANT = ("face_starts", "face_corners", "part_starts", "part_edges", "part_sides")  # of SpatialMotion
-_ROOM = ("found", "labels", "numbers", "taken", "heirs")
 _N_KINDS, _MOST_THREADS = 4, 4096
 
 
 def guard_of(sim: Simulation) -> Callable[[Any], None]:
     """Looks at `sim`, once a kept state is in it (None), or at a saved state beside. Raises ValueError: it is unfit."""
     before, bodies, links, chains = sim.tracking.arrays(), sim.bodies, sim.links, sim.tracking.chains
+    dampers = getattr(sim, "dampers", None)
 
     def check(saved: Any | None) -> None:
         one = saved or sim.tracking
         _check_rows(sim, before, one)
-        _alike_or_raise(bodies, getattr(one, "bodies", bodies))
+        _require(alike(bodies, getattr(one, "bodies", bodies)), "Bodies")
         if saved is not None:
             return
         _same(links, sim.links)
         _same(chains, sim.tracking.chains)
-        if dampers := getattr(sim, "dampers", None):
-            _check_record(dampers, _counts(sim, sim.joints))
-            _require(0 <= dampers.first <= sim.contacts.memory.shape[1], "Dampers.first")
+        if dampers is not None:
+            kept = sim.dampers  # type: ignore[attr-defined]
+            _check_record(dampers, kept, _counts(sim, sim.joints))
+            _require(0 <= kept.first <= sim.contacts.memory.shape[1], "Dampers.first")
 
     return check
 
@@ -84,7 +86,7 @@ def _counts(sim: Simulation, joints: Any) -> dict[str, int]:
 def _check_rows(sim: Simulation, before: Any, one: Any) -> None:
     """Joints, geometry and contacts of a state. before: those that this run has."""
     for name in before._fields:
-        _alike_or_raise(getattr(before, name), getattr(one, name), rows=True)
+        _require(alike(getattr(before, name), getattr(one, name), rows=True), name)
     joints, geometry = one.joints, one.geometry
     _check_starts(joints.starts, len(joints.blocks), len(joints.kn))
     counts = _counts(sim, joints)
@@ -98,23 +100,27 @@ def _check_rows(sim: Simulation, before: Any, one: Any) -> None:
         counts["caps"] = int(geometry.cap_starts[-1])
         _check_starts(geometry.cap_starts, counts["joints"], counts["caps"])
         _same([getattr(before.geometry, name) for name in _CONSTANT], [getattr(geometry, name) for name in _CONSTANT])
-        room = 2 * int(np.diff(joints.starts).max(initial=0)) + 2
-        rows = {len(getattr(geometry, name)) for name in _ROOM} | {geometry.work.shape[1]}
-        _require(len(rows) == 1 and min(rows) >= room and len(geometry.work) == len(before.geometry.work), "room")
-    for record in (joints, geometry, one.contacts):
-        _check_record(record, counts)
+        counts["room"], least = len(geometry.found), 2 * int(np.diff(joints.starts).max(initial=0)) + 2
+        fits = geometry.work.shape[1] == counts["room"] >= least and len(geometry.work) == len(before.geometry.work)
+        _require(fits, "room")
+    for here, kept in zip(before, (joints, geometry, one.contacts), strict=True):
+        _check_record(here, kept, counts)
 
 
-def _check_record(record: Any, counts: Mapping[str, int]) -> None:
-    name = type(record).__name__
+def _check_record(here: Any, kept: Any, counts: Mapping[str, int]) -> None:
+    name, rows = type(kept).__name__, set[str]()
     for count, fields in _ROWS[name].items():
         for field in fields.split():
-            n = len(getattr(record, field))
+            rows.add(field)
+            n = len(getattr(kept, field))
             _require(n == counts[count.rstrip("?")] or (count.endswith("?") and n == 0), f"{name}.{field}")
+    for field, array in here._asdict().items():
+        if field not in rows | {"tiles", "work"}:
+            _require(alike(array, getattr(kept, field)), f"{name}.{field}")
     for count, fields in _NUMBERS.get(name, {}).items():
         most = counts[count.rstrip("!")] + count.endswith("!")
         for field in fields.split():
-            numbers, least = getattr(record, field), -1 if field in _NONE_IS_ONE else 0
+            numbers, least = getattr(kept, field), -1 if field in _NONE_IS_ONE else 0
             _require(numbers.min(initial=0) >= least and numbers.max(initial=-1) < most, f"{name}.{field}")
 
 
@@ -124,28 +130,28 @@ def _check_starts(starts: np.ndarray, n: int, last: int) -> None:
 
 
 def _check_tiles(sim: Simulation, joints: FixedJoints) -> None:
-    """Tiles are those of these joints; room has nothing in it that is read."""
+    """Tiles are those of these joints, for as many threads as they are for."""
     threads, model, tiles = len(joints.tiles.controls), sim.model, joints.tiles
     _require(0 < threads <= _MOST_THREADS, "tiles")
-    if len(tiles.joints) or sim.tiled:
+    made = NO_TILES
+    if sim.tiled:
         made = tiled(joints.blocks, joints.starts, model.n_blocks, model.dimension, sim.law.n_of_lanes, threads)
-        layout = slice(made._fields.index("ends"))
-        _same(made[layout], tiles[layout])
-        _alike_or_raise(made, tiles)
+    layout = made._fields.index("ends")  # behind it is room, of which nothing is read before it is written
+    _same(made[:layout], tiles[:layout])
+    for name, room in made._asdict().items():
+        _require(alike(room, getattr(tiles, name)), f"JointTiles.{name}")
 
 
 def _same(here: Any, kept: Any) -> None:
-    """Of records of arrays, the same numbers that count, and as many others."""
-    _alike_or_raise(here, kept)
-    for a, b in zip(here or (), kept or (), strict=True):
-        if isinstance(a, tuple):
-            _same(a, b)
-        elif isinstance(a, np.ndarray) and a.dtype.kind in "iu":
-            _require(bool((a == b).all()), "what stays the same")
-
-
-def _alike_or_raise(here: Any, kept: Any, rows: bool = False) -> None:
-    _require(alike(here, kept, rows), type(here).__name__)
+    """Of records of arrays, the same whole numbers, and as many others."""
+    if isinstance(here, np.ndarray):
+        whole = here.dtype.kind in "iu"
+        _require(alike(here, kept) and not (whole and (here != kept).any()), "what stays the same")
+    elif here is not None:
+        _require(type(here) is type(kept) and len(here) == len(kept), "what stays the same")
+        for a, b in zip(here, kept, strict=True):
+            if isinstance(a, (np.ndarray, tuple)):
+                _same(a, b)
 
 
 def _require(fits: bool, what: str) -> None:

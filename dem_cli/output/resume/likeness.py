@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 _NUMBERS = (bool, int, float, np.number, np.bool_)
-_OF_JOINTS = frozenset((  # records whose arrays have rows of joints and points, of which there may be others by now
-    "Contacts", "Dampers", "MovingJoints", "PlanarGeometry", "SpatialGeometry", "SpatialMotion",
+_OF_JOINTS = frozenset((  # records whose arrays have rows of joints, points or threads, which may be others by now
+    "Contacts", "Dampers", "JointTiles", "MovingJoints", "PlanarGeometry", "SpatialGeometry", "SpatialMotion",
 ))  # fmt: skip
 
 
