@@ -18,7 +18,7 @@ from scipy.sparse import csr_matrix
 from dem_cli.contact.chains import STEEP
 from dem_cli.errors import UsageError
 from dem_cli.kernels.records import Joints
-from dem_cli.laws.envelope import Envelope
+from dem_cli.laws.envelope import Envelope, frictional
 from dem_cli.laws.law import Law
 
 
@@ -253,9 +253,11 @@ def friction_of(joints: Joints, law: Law, heads_frictionless: bool = False) -> n
     heads_frictionless: joints steeper than 45° to the horizontal carry no friction (thesis Table 5-3).
     Raises UsageError where the law remembers anything, or has more than |T| ≤ μ N.
     """
-    if law.envelope is None or law.bonded or law.n_memory(2):
-        raise UsageError(
-            f"limit analysis needs joints whose largest shear force is friction × normal force; "
-            f"law '{law.name}' is not of that kind"
-        )
-    return envelope_of(joints, law, heads_frictionless).friction
+    if law.envelope is not None and not law.bonded and not law.n_memory(2):
+        found = envelope_of(joints, law, heads_frictionless)
+        if all(np.array_equal(*pair) for pair in zip(found, frictional(found.friction), strict=True)):
+            return found.friction
+    raise UsageError(
+        f"limit analysis needs joints whose largest shear force is friction × normal force; "
+        f"law '{law.name}' is not of that kind"
+    )

@@ -44,11 +44,11 @@ GENERATORS: dict[str, Generator] = {
     generator.kind: generator
     for generator in (
         Generator("wall", "Wall", "dem_cli.structures.wall_blocks"),
-        Generator("column", "Column", "dem_cli.structures.column"),
+        Generator("column", "Column", "dem_cli.structures.columns.column"),
         Generator("arch", "Arch", "dem_cli.structures.arch"),
         Generator("bridge", "Bridge", "dem_cli.structures.bridge"),
-        Generator("drums", "DrumColumn", "dem_cli.structures.drums"),
-        Generator("temple-front", "TempleFront", "dem_cli.structures.temple_front"),
+        Generator("drums", "DrumColumn", "dem_cli.structures.columns.drums"),
+        Generator("temple-front", "TempleFront", "dem_cli.structures.columns.temple_front"),
         Generator("vault", "Vault", "dem_cli.structures.vaults.shapes"),
         Generator("voronoi-wall", "VoronoiWall", "dem_cli.structures.patterns.voronoi_wall"),
         Generator("coursed-wall", "CoursedWall", "dem_cli.structures.patterns.coursed_wall"),

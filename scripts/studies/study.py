@@ -11,7 +11,7 @@ from typing import Any
 
 from dem_cli.bench.cases import compiled
 from dem_cli.bench.machine import describe, sentence
-from studies import storage
+from studies import measured, storage
 from studies.places import DOCS
 from studies.template import filled
 
@@ -65,8 +65,12 @@ class StudyRunner:
     # -- files ---------------------------------------------------------------------------------------------
 
     def page(self, table: Mapping[str, Any]) -> str:
-        """The page of what is kept."""
-        machine = {"machine": sentence(table["machine"])} if "machine" in table else {}
+        """The page of what is kept, with the versions that it was measured with."""
+        return measured.stamped(self.name, self.text(table))
+
+    def text(self, table: Mapping[str, Any]) -> str:
+        """The page without them."""
+        machine = {"machine": sentence(table["machine"] | {"dem": None})} if "machine" in table else {}
         return filled(f"{self.name}/page.md.j2", **(self.values(table) if self.values else {}), **machine)
 
     def write(self, found: Mapping[str, Any]) -> None:
@@ -74,6 +78,7 @@ class StudyRunner:
         table = storage.read(self.name) | dict(found)
         order = [*(["machine"] if "machine" in table else []), *self.sections]
         storage.write(self.name, {name: table[name] for name in order if name in table})
+        measured.note(self.name, found)
         self.draw(found)
 
     def redraw(self) -> None:
@@ -135,7 +140,7 @@ class SectionedStudy(StudyRunner):
     def problems(self, section: str, found: Any) -> list[str]:
         return [f"no answer: {run['command']}" for run in runs_of(found) if not run["status"].startswith(self.final)]
 
-    def page(self, table: Mapping[str, Any]) -> str:
+    def text(self, table: Mapping[str, Any]) -> str:
         there = [name for name in self.sections if name in table]
         return "\n".join([filled(f"{self.name}/head.md.j2"), *(self.said(name, table[name]) for name in there)])
 

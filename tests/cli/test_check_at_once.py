@@ -23,7 +23,7 @@ from dem_cli.cli.main import main
 try:
     main(sys.argv[1:])
 finally:
-    kinds = {"dem_cli.structures.vaults.shapes", "dem_cli.structures.column", "dem_cli.laws.barton"}
+    kinds = {"dem_cli.structures.vaults.shapes", "dem_cli.structures.columns.column", "dem_cli.laws.barton"}
     kinds |= {"numpy.f2py.crackfortran", "numpy.testing._private"}
     print("LOADED", sorted({"numba", "scipy", "h5py", "matplotlib", "dem_cli.motion.table", *kinds} & set(sys.modules)))
 """

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli import api
+from dem_cli.case.reader import LoadedCase
 from dem_cli.contact.compatibility import free_columns, relative_motion, strain_motion
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.engine.properties import joint_properties
@@ -27,12 +28,16 @@ def stones(deformation: str) -> list[str]:
 
 def displacement(ratio: float, deformation: str) -> float:
     """Of the beam per newton of a push that acts evenly in it [m], all joints closed; linear. ratio: kn h/E."""
+    kn = ratio * YOUNG / HEIGHT
+    law = f"{{law='elastic', kn={kn!r}, ks={SHEAR * kn!r}, points=5}}"
+    return compliance(from_file(WALL, f"joints.dry={law}", *stones(deformation)))
+
+
+def compliance(loaded: LoadedCase) -> float:
+    """Work of the live loads per square of them, all joints closed: displacement of a unit load along itself [m/N]."""
     from scipy.sparse import coo_array, diags_array
     from scipy.sparse.linalg import spsolve
 
-    kn = ratio * YOUNG / HEIGHT
-    law = f"{{law='elastic', kn={kn!r}, ks={SHEAR * kn!r}, points=5}}"
-    loaded = from_file(WALL, f"joints.dry={law}", *stones(deformation))
     model = api.build_model(loaded)
     properties, bodies = joint_properties(loaded.case, model), bodies_at_rest(model)
     joints = joints_of_start(model, bodies, properties, smallest_edge(model)).joints

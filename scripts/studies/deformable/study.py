@@ -1,8 +1,9 @@
-"""Study of joints and blocks that deform: contact points, blocks lumped into their joints."""
+"""Study of joints and blocks that deform: contact points, blocks in a wall, and in a column that is bent."""
 
 from __future__ import annotations
 
-from studies.deformable import lumped, points
+from studies.deformable import bending, lumped, points
 from studies.study import SectionedStudy
 
-STUDY = SectionedStudy("deformable", "Joints and blocks that deform", (points, lumped), final=("ok", "completed"))
+SECTIONS = (points, lumped, bending)
+STUDY = SectionedStudy("deformable", "Joints and blocks that deform", SECTIONS, final=("ok", "completed"))

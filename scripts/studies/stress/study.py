@@ -14,7 +14,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from studies import storage
+from studies import measured, storage
 from studies.stress import invariance, proportions, shaking, steady_state, stiffness, tables
 from studies.stress.random_structures import page as random_structures
 from studies.stress.verdicts import WRONG, StressRecord
@@ -88,10 +88,11 @@ class StressStudy(StudyRunner):
     def write(self, found: Mapping[str, Any]) -> None:
         table = storage.read(self.name) | dict(found)
         storage.write(self.name, {name: table[name] for name in self.sections if name in table})
+        measured.note(self.name, found)
         if set(table) == set(self.sections):
             self.draw(found)
 
-    def page(self, table: Mapping[str, Any]) -> str:
+    def text(self, table: Mapping[str, Any]) -> str:
         records = {name: records_of(rows) for name, rows in table.items()}
         said = {name: (axis.__doc__ or "").strip() for name, axis in self.sections.items()}
         about = {one.axis: said[name] for name, found in records.items() for one in found}

@@ -91,17 +91,18 @@ def test_rigid_blocks_are_as_before(stone):
     assert moved(column(stone=stone), np.array([0.0, -1e5, 0.0]))[1] == pytest.approx(-1e5 / A * N / KN, rel=1e-9)
 
 
-@pytest.mark.parametrize(("deformation", "kn", "said"), [
-    ("uniform-strain", KN, True), ("uniform-strain", 0.1 * E / H, False), ("quadratic", KN, False),
-    ("joints", KN, False),
+@pytest.mark.parametrize(("deformation", "ratio", "said"), [
+    ("uniform-strain", 4.0, "4"), ("uniform-strain", 0.44, "0.44"), ("uniform-strain", 0.09, ""),
+    ("quadratic", 4.0, ""), ("joints", 4.0, ""),
 ])  # fmt: skip
-def test_blocks_that_do_not_bend_beside_stiff_joints_say_so(deformation, kn, said):
-    """kn h/E = 4 and 0.1."""
-    made = scene(column(stone=STONE | {"deformation": deformation}, joint={"friction": 0.6, "kn": kn}))
+def test_blocks_that_do_not_bend_beside_stiff_joints_say_so(deformation, ratio, said):
+    """By kn h/E; at 0.44 a column that bends is 27 % too stiff."""
+    joint = {"friction": 0.6, "kn": ratio * E / H}
+    made = scene(column(stone=STONE | {"deformation": deformation}, joint=joint))
     sim = Simulation(made.model, law_of(made.case), joint_properties(made.case, made.model), "fixed")
     found = unbending(made.case, sim)
-    assert len(found) == said
-    assert all("deform 4 times as much as joint 'dry'" in text and "do not bend" in text for text in found)
+    assert len(found) == bool(said)
+    assert all(f"deform {said} times as much as joint 'dry'" in text and "do not bend" in text for text in found)
 
 
 def test_fixed_blocks_are_supports_whatever_their_material():

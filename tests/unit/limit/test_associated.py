@@ -14,6 +14,7 @@ from oracle.limit_lp import limit_load as oracle_load
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.errors import UsageError
 from dem_cli.laws.coulomb import COULOMB
+from dem_cli.laws.envelope import envelope
 from dem_cli.limit import associated
 from dem_cli.limit.analysis import limit_loads, start_structure
 from dem_cli.limit.associated import FALLS, GIVEN_UP, LOCKED, OK
@@ -245,7 +246,8 @@ def test_a_law_without_straight_lines_is_refused():
 def test_a_law_that_is_not_friction_alone_has_no_path():
     made = scene(wall())
     structure = start_structure(made.model, joint_properties(made.case, made.model))
-    for change in ({"envelope": None}, {"scalars": 1}, {"bonded": True}):
+    glued = {"envelope": lambda parameters, kn: envelope(len(kn), friction=0.6, cohesion=1e3)}
+    for change in ({"envelope": None}, {"scalars": 1}, {"bonded": True}, glued):
         with pytest.raises(UsageError, match="law 'glue'"):
             friction_of(structure.joints, dataclasses.replace(COULOMB, name="glue", **change))
 

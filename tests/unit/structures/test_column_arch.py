@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from dem_cli.geometry import polygon
-from dem_cli.structures import arch, column
+from dem_cli.structures import arch
+from dem_cli.structures.columns import column
 from dem_cli.structures.placement import corner_blocks, place
 
 SEMICIRCLE = {"voussoirs": 21, "radius": 1.0, "ring": 0.15}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from studies import storage
+from studies import measured, storage
 from studies.stress.random_structures import verdicts
 from studies.stress.random_structures.methods import DEFAULT
 from studies.template import filled
@@ -76,6 +76,7 @@ def section() -> str:
         counts=markdown(["what", "how many"], [list(item) for item in about]),
         kinds=markdown(["kind", "structures", "known load", "worst error of these", "methods disagree"], kinds(rows)),
         differ=markdown(["seed", "structure", "admissible", *METHODS, "said"], [cells(row) for row in differ]),
+        measured=measured.sentence("random_structures"),
         seeds=f"{rows[0]['seed']} to {rows[-1]['seed']}",
     )
 

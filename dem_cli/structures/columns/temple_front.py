@@ -12,7 +12,7 @@ from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, Stru
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
 from dem_cli.structures.bases import base_block
-from dem_cli.structures.drums import Shaft, stones_of
+from dem_cli.structures.columns.drums import Shaft, stones_of
 
 
 class Beam(CaseModel):

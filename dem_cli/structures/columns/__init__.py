@@ -1,0 +1,1 @@
+"""Columns: of blocks, of round drums, and rows of these with what they carry."""
