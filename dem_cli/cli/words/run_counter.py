@@ -53,7 +53,8 @@ class RunCounter:
 
     def line(self) -> str:
         """Where it stands."""
-        return f"{self.done:,} of {self.total:,} runs{self._failures()}, {', '.join(filter(None, (self.speed(), self._left())))}"
+        pace = ", ".join(filter(None, (self.speed(), self._left())))
+        return f"{self.done:,} of {self.total:,} runs{self._failures()}, {pace}"
 
     def _left(self) -> str:
         rate = self.rate()
