@@ -28,6 +28,17 @@ class DemError(Exception):
 
     exit_code = 1
 
+    def _render_traceback_(self) -> list[str]:
+        """What a notebook shows of it in place of a traceback: the line that asked for it, and the message."""
+        import linecache
+
+        trace, asked = self.__traceback__, ""
+        while trace is not None and not trace.tb_frame.f_globals.get("__name__", "").startswith("dem_cli"):
+            asked = linecache.getline(trace.tb_frame.f_code.co_filename, trace.tb_lineno).strip()
+            trace = trace.tb_next
+        first, *more = str(self).splitlines() or [""]
+        return [*([f"in: {asked}"] if asked else []), f"{type(self).__name__}: {first}", *more]
+
 
 @dataclass(frozen=True)
 class CaseProblem:

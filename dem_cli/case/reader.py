@@ -209,10 +209,9 @@ def decoded(path: Path, raw: bytes) -> str:
 
 
 def near_file(path: Path) -> str:
-    """`, did you mean 'wall_21.toml'?` for a file of nearly that name in the same folder."""
-    try:
-        files = sorted(file.name for file in path.parent.iterdir() if file.is_file())
-    except OSError:
+    """`, did you mean 'wall_21.toml'?` for a TOML file of nearly that name in the same folder."""
+    if not path.parent.is_dir():
         return f" (there is no folder '{path.parent}')"
-    close = difflib.get_close_matches(path.name, files, 1) or difflib.get_close_matches(f"{path.name}.toml", files, 1)
-    return f", did you mean '{path.parent / close[0]}'?" if close else ""
+    files = {file.stem: file for file in sorted(path.parent.glob("*.toml")) if file.is_file()}
+    close = difflib.get_close_matches(path.stem, files, 1)  # what all names end in makes none alike
+    return f", did you mean '{files[close[0]]}'?" if close else ""

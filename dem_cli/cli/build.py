@@ -12,7 +12,9 @@ from dem_cli.cli.options import case_argument, load, overrides_option, warn
 @click.command("build", short_help="Write the blocks of a case to a file for another program.")
 @case_argument
 @overrides_option
-@click.option("-o", "--output", required=True, metavar="FILE", help="File to write, such as model.obj.")
+@click.option(
+    "-o", "--output", required=True, type=click.Path(), metavar="FILE", help="File to write, such as model.obj."
+)
 def command(case: str, overrides: tuple[str, ...], output: str) -> None:
     """Write the blocks of CASE to FILE.
 

@@ -12,7 +12,7 @@ import os
 import sys
 from contextlib import suppress
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -20,6 +20,9 @@ from dem_cli.errors import DemError, OutputError
 from dem_cli.interrupts import Interrupts, asked
 from dem_cli.late_modules import start_lightly
 from dem_cli.version import __version__
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
 
 COMMANDS = {  # name -> the line that `dem --help` shows
     "run": "Solve a case and write its results.",
@@ -76,6 +79,14 @@ class LazyGroup(click.Group):
         if name not in COMMANDS:
             return None
         return import_module(f"dem_cli.cli.{name}").command
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """What a shell offers in place of a command: those that begin so, without importing any, or options."""
+        from click.shell_completion import CompletionItem
+
+        if incomplete.startswith("-"):
+            return super().shell_complete(ctx, incomplete)
+        return [CompletionItem(name, help=line) for name, line in COMMANDS.items() if name.startswith(incomplete)]
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]

@@ -13,7 +13,7 @@ TEMPLATE_KINDS = tuple(sorted(path.stem for path in TEMPLATES.glob("*.toml")))
 
 @click.command("new", short_help="Print a commented case file to start from.")
 @click.argument("kind", type=click.Choice(TEMPLATE_KINDS), metavar="KIND")
-@click.option("-o", "--output", metavar="FILE", help="Write to a new file instead of printing.")
+@click.option("-o", "--output", type=click.Path(), metavar="FILE", help="Write to a new file instead of printing.")
 def command(kind: str, output: str | None) -> None:
     """Print a commented case file to start from.
 

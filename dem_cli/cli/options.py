@@ -13,7 +13,7 @@ import click
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
 
-case_argument = click.argument("case", metavar="CASE")
+case_argument = click.argument("case", metavar="CASE", type=click.Path(readable=False))  # shells complete file names
 overrides_option = click.option(
     "--set",
     "overrides",

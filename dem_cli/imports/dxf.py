@@ -25,10 +25,10 @@ class _Piece(NamedTuple):
     said: str  # its kind and handle
 
 
-def read(path: Path, chords: int | None = None, only: Collection[str] = ()) -> Contents:
+def read(path: Path, chords: int | None = None, only: Collection[str] = (), skip: Collection[str] = ()) -> Contents:
     """The outlines of a drawing. Raises FileProblem. chords: straight pieces of a curve; None: curves are refused.
 
-    only: layers that are read, others are left out; (): all.
+    only: layers that are read, others are left out; (): all. skip: layers that are left out.
     """
     drawing = _drawing(path)
     shown = {layer.dxf.name for layer in drawing.layers if not layer.is_off() and not layer.is_frozen()}
@@ -37,7 +37,7 @@ def read(path: Path, chords: int | None = None, only: Collection[str] = ()) -> C
     for entity in _entities(drawing):
         kind, layer = entity.dxftype(), entity.dxf.layer
         layers[layer] = True
-        if only and layer not in only:
+        if layer in skip or (only and layer not in only):
             left_out[f"on layer '{layer}'"] += 1
         elif layer not in shown and any(layer == known.dxf.name for known in drawing.layers):
             left_out[f"{kind} on layer '{layer}', which is off"] += 1

@@ -33,8 +33,10 @@ def format_of(file: str | Path) -> FileFormat | None:
     return FORMATS.get(Path(file).suffix.lower())
 
 
-def read(file: str | Path, chords: int | None = None, only: Collection[str] = ()) -> Contents:
-    """All bodies in a file, of a drawing those on the layers `only`; (): on any. Raises FileProblem.
+def read(
+    file: str | Path, chords: int | None = None, only: Collection[str] = (), skip: Collection[str] = ()
+) -> Contents:
+    """All bodies in a file, of a drawing those on the layers `only`; (): on any but `skip`. Raises FileProblem.
 
     chords: straight pieces of a curve in a drawing.
     """
@@ -43,7 +45,7 @@ def read(file: str | Path, chords: int | None = None, only: Collection[str] = ()
         raise FileProblem(f"'{path.suffix}' is not read; allowed: {', '.join(FORMATS)}")
     reader: Callable[..., Contents] = import_module(found.module).read
     try:
-        contents = reader(path, chords, only) if found.flat else reader(path)
+        contents = reader(path, chords, only, skip) if found.flat else reader(path)
     except OSError as error:
         raise FileProblem(f"cannot be read ({error.strerror or error})") from None
     absent = [name for name in only if name not in contents.layers]

@@ -22,16 +22,16 @@ LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 _PAGE = ("width", "height", "viewBox", "x", "y", "preserveAspectRatio")
 
 
-def read(path: Path, chords: int | None = None, only: Collection[str] = ()) -> Contents:
+def read(path: Path, chords: int | None = None, only: Collection[str] = (), skip: Collection[str] = ()) -> Contents:
     """The outlines of a drawing. Raises FileProblem. chords: straight pieces of a curve; None: curves are refused.
 
-    only: groups (layers) that are read, others are left out; (): all.
+    only: groups (layers) that are read, others are left out; (): all. skip: groups that are left out.
     """
     left_out: Counter[str] = Counter()
     bodies, layers = [], {}
     for name, layer, shape in _shapes(_parsed(path, left_out), "", left_out):
         layers[layer] = True
-        if only and layer not in only:
+        if layer in skip or (only and layer not in only):
             left_out[f"on group '{layer}'" if layer else "on no group"] += 1
             continue
         for ring in _rings(shape, name, chords):

@@ -1,11 +1,12 @@
-"""Atomic file writes: a file is there whole, or as it was."""
+"""Atomic file writes: a file, or all files of a folder, are there whole, or as they were."""
 
 from __future__ import annotations
 
 import secrets
+import shutil
 import sqlite3
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from dem_cli.output.folder import write_error
@@ -27,6 +28,28 @@ def whole(path: Path) -> Iterator[Path]:
         raise write_error(error, path) from None
     finally:
         part.unlink(missing_ok=True)
+
+
+@contextmanager
+def whole_folder(folder: Path) -> Iterator[Path]:
+    """A folder to write files to; they appear in `folder` once all went well, else it is as it was, or not there.
+
+    Raises OutputError where the disk does not take them.
+    """
+    made = [path for path in (folder, *folder.parents) if not path.exists()]
+    part = folder / f"{PART}{secrets.token_hex(4)}"
+    try:
+        part.mkdir(parents=True)
+        yield part
+        for path in sorted(part.iterdir()):
+            path.replace(folder / path.name)
+    except OSError as error:
+        raise write_error(error, folder) from None
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+        for path in made:  # those that hold something stay
+            with suppress(OSError):
+                path.rmdir()
 
 
 def write_text(path: Path, text: str) -> None:

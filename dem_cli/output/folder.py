@@ -3,7 +3,7 @@
 Files are written into a hidden folder beside the final one and renamed into place. Where that cannot be
 (a mount point, the current folder, an unwritable parent, `--force` among other files) the hidden folder
 lies inside and only files of ours are moved. A lock, freed by the system when its owner dies, tells the
-leftovers of a killed run from a run that goes on.
+leftovers of a killed run from a run that goes on; another one beside the folder refuses a second run into it.
 """
 
 from __future__ import annotations
@@ -15,10 +15,12 @@ import re
 import secrets
 import shutil
 import time
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 
 from dem_cli.errors import DemError, OutputError, UsageError
+from dem_cli.output.resume.leftovers import in_use
 
 SUMMARY = "summary.json"
 OWN_NAMES = frozenset(
@@ -61,6 +63,7 @@ OWN_KEYS = frozenset(("title", "kind", "version", "status"))  # what every summa
 INTERRUPTED_SUFFIX = ".interrupted"  # suffix of the sibling that keeps a partial result beside a complete one
 JOURNAL = ".dem-runs"  # suffix of the hidden file that keeps finished runs for --resume
 CHECKPOINTS = ".dem-stages"  # suffix of the hidden folder that keeps the stages of one run for --resume
+CLAIM = ".dem-lock"  # suffix of the hidden file that a run holds while it is to write there
 _LOCK = ".lock"
 _NEW, _OLD = "dem-new", "dem-old"
 _REASONS = {
@@ -109,7 +112,7 @@ def is_complete(folder: Path) -> bool:
 
 def foreign_names(folder: Path) -> list[str]:
     """What `folder` holds that `dem` did not write; leftovers of our own are not counted."""
-    ours = re.compile(rf"\..*(({_NEW}|{_OLD})-|({re.escape(JOURNAL)}|{re.escape(CHECKPOINTS)})$)")
+    ours = re.compile(rf"\..*(({_NEW}|{_OLD})-|({'|'.join(map(re.escape, (JOURNAL, CHECKPOINTS, CLAIM)))})$)")
     names = sorted(path.name for path in folder.iterdir() if not ours.match(path.name))
     names = [name for name in names if not (name.endswith(INTERRUPTED_SUFFIX) and is_ours(folder / name))]
     return [name for name in names if name not in OWN_NAMES] if is_ours(folder) else names
@@ -124,26 +127,38 @@ class OutputFolder:
         self.force, self.recover = force, recover  # recover: look for what killed runs left there
         self._made: list[Path] = []
         self._lock: int | None = None
+        self._claim: int | None = None
         if self.final.exists() and not self.final.is_dir():
             raise UsageError(f"output folder {self.name}: a file of that name exists")
         try:
             self._open()
-        except OSError as error:
+        except BaseException as error:
             self.discard()
+            if not isinstance(error, OSError):
+                raise
             raise write_error(error, Path(self.name)) from None
 
     def _open(self) -> None:
+        self._make_parents()
         if self.recover:
+            self._claim_file = self._claim_place()
+            self._claim = claimed(self._claim_file)
+            if self._claim is None:
+                raise in_use(Path(self.name))
             self._recover(self.final.parent)
             if self.final.is_dir():
                 self._recover(self.final)
         self._refuse_foreign()
-        self._make_parents()
         self.inside = self._must_be_inside()
         base = self.final if self.inside else self.final.parent
         self.path = base / self._hidden(_NEW)
         self.path.mkdir()
         self._lock = _lock(self.path / _LOCK)
+
+    def _claim_place(self) -> Path:
+        """The lock: beside the folder; inside where whoever shares the folder may not share what is beside it."""
+        alone = self.final.is_dir() and (os.path.ismount(self.final) or not os.access(self.final.parent, os.W_OK))
+        return (self.final if alone else self.final.parent) / f".{self.final.name}{CLAIM}"
 
     def _hidden(self, kind: str) -> str:
         return f".{self.final.name}.{kind}-{secrets.token_hex(4)}"
@@ -222,6 +237,10 @@ class OutputFolder:
         self._unlock()
         if hasattr(self, "path"):
             shutil.rmtree(self.path, ignore_errors=True)
+        if self._claim is not None:
+            self._claim_file.unlink(missing_ok=True)
+            os.close(self._claim)
+            self._claim = None
         for folder in reversed(self._made):
             try:
                 folder.rmdir()
@@ -278,6 +297,19 @@ def _try_flock(handle: int) -> bool:
     except (ImportError, OSError):
         return False
     return True
+
+
+def claimed(path: Path) -> int | None:
+    """The lock file of that name, made and locked; None where another run has it. Its owner removes it at last."""
+    while True:
+        file = os.open(path, os.O_CREAT | os.O_RDWR, 0o644)
+        if not locked(file):
+            os.close(file)
+            return None
+        with suppress(FileNotFoundError):
+            if os.path.samestat(os.fstat(file), path.stat()):
+                return file
+        os.close(file)  # its last owner removed it meanwhile
 
 
 def abandoned(folder: Path) -> bool:

@@ -1,4 +1,4 @@
-"""Charts of a sweep: any column over any other, in families; failed runs marked, brackets as error bars."""
+"""Charts of a sweep: any column over any other, in families; brackets as bars, crosses where a run has neither."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from dem_cli.post.sweep_table import SweepTable, distinct, numeric, shown
 
 _SCATTERED = 0.5  # of the runs: more families than that are no families, but points
 _FAILED = "#c0392b"
+_ALONE = (0, (2, 2))  # dashes of a bracket without an answer
 MOST_ENTRIES = 24  # of a legend
 
 
@@ -63,7 +64,10 @@ def draw_sweep(
         axes[-1].set_xlabel(name)
         if keys.bar:
             chart.draw_bar(figure, axes, keys, quantities[by[0]].label())
-        _legend(figure, families, keys, rests, ys, by, quantities, any(missing))
+        alone = any(
+            table.columns[y][i] is None and _bracket(table, y, i)[0] is not None for y in ys for i in range(table.count)
+        )
+        _legend(figure, families, keys, rests, ys, by, quantities, (alone, any(missing)))
         chart.title(figure, table.title)
 
 
@@ -143,24 +147,34 @@ def _draw_family(
     rows: Sequence[int],
     look: dict[str, Any],
 ) -> None:
-    """Points where there is an answer, joined; a bar where a bracket says how sure it is."""
+    """Points where there is an answer, joined; a bar where a bracket says how sure it is, dashed where it is all."""
     at, heights = places
-    rows = [i for i in rows if table.columns[y][i] is not None]
-    xs, values = [at[i] for i in rows], [heights[i] for i in rows]
+    answered = [i for i in rows if table.columns[y][i] is not None]
     size = 5.0 if len(rows) <= 30 else 3.0
-    axis.plot(xs, values, lw=1.5, ms=size, mew=0.0, **look)
-    low, high = (table.columns.get(f"{y}_bracket.{end}") for end in (0, 1))
-    if low is None or high is None:
-        return
-    for i, place in zip(rows, xs):
-        if low[i] is not None and high[i] is not None:
-            ends = [heights.factor * low[i], heights.factor * high[i]]
-            axis.plot([place, place], ends, color=look["color"], lw=1.0, marker="_", ms=6.0, mew=1.0)
+    axis.plot([at[i] for i in answered], [heights[i] for i in answered], lw=1.5, ms=size, mew=0.0, **look)
+    for i in rows:
+        low, high = _bracket(table, y, i)
+        if low is None:
+            continue
+        alone = {"ls": _ALONE} if table.columns[y][i] is None else {}
+        ends = [heights.factor * end for end in (low, high) if end is not None]
+        mark = "_" if high is not None else "^"  # it stands there, and nobody knows how far it goes
+        axis.plot([at[i]] * len(ends), ends, color=look["color"], lw=1.0, marker=mark, ms=6.0, mew=1.0, **alone)
+
+
+def _bracket(table: SweepTable, y: str, row: int) -> tuple[float | None, float | None]:
+    """Between which values the answer of a run lies; None: an end that is not known."""
+    low, high = (table.columns.get(f"{y}_bracket.{end}", [None] * table.count)[row] for end in (0, 1))
+    return low, high
 
 
 def _mark_missing(axis: Any, table: SweepTable, at: _AxisPositions, y: str) -> bool:
-    """Crosses on the axis where a run has no answer; whether there are any."""
-    rows = [i for i in range(table.count) if table.columns[y][i] is None and at.values[i] is not None]
+    """Crosses on the axis where a run has neither an answer nor a bracket; whether there are any."""
+    rows = [
+        i
+        for i in range(table.count)
+        if table.columns[y][i] is None and at.values[i] is not None and _bracket(table, y, i)[0] is None
+    ]
     if rows:
         axis.plot([at[i] for i in rows], [0.015] * len(rows), "x", color=_FAILED, ms=6.0, mew=1.6, clip_on=False,
                   transform=axis.get_xaxis_transform(), zorder=4)  # fmt: skip
@@ -169,9 +183,12 @@ def _mark_missing(axis: Any, table: SweepTable, at: _AxisPositions, y: str) -> b
 
 def _legend(
     figure: Any, families: Sequence[RunFamily], keys: chart.FamilyColours, rests: Sequence[tuple[Any, ...]],
-    ys: Sequence[str], by: Sequence[str], quantities: Mapping[str, Quantity], missing: bool,
+    ys: Sequence[str], by: Sequence[str], quantities: Mapping[str, Quantity], gaps: tuple[bool, bool],
 ) -> None:  # fmt: skip
-    """Colours for the first key, markers for the others, dashes for columns, a cross for what has no answer."""
+    """Colours for the first key, markers for the others, dashes for columns.
+
+    gaps: whether there are runs that have a bracket alone, and runs that have nothing.
+    """
     from matplotlib.lines import Line2D
 
     handles: list[Any] = []
@@ -196,6 +213,9 @@ def _legend(
             look = {"color": chart.COLOURS[i % len(chart.COLOURS)]} if alone else {"color": style.GREY}
             dashes = "-" if alone else chart.DASHES[i % len(chart.DASHES)]
             handles.append(Line2D([], [], ls=dashes, label=quantities[y].words, **look))
+    alone, missing = gaps
+    if alone:
+        handles.append(Line2D([], [], color=style.GREY, ls=_ALONE, lw=1.0, label="bracket, no answer"))
     if missing:
         handles.append(Line2D([], [], color=_FAILED, marker="x", ls="none", mew=1.6, label="no answer"))
     if len(handles) > MOST_ENTRIES:

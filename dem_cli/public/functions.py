@@ -13,6 +13,7 @@ from typing import Any
 from dem_cli import api
 from dem_cli.case.overrides import override_of
 from dem_cli.case.reader import LoadedCase
+from dem_cli.case.wording import show
 from dem_cli.case.writer import text_of_tables
 from dem_cli.errors import UsageError
 from dem_cli.interrupts import Interrupts
@@ -24,6 +25,7 @@ from dem_cli.public.result import Result
 
 CaseSource = str | os.PathLike[str] | LoadedCase | Mapping[str, Any]
 ProgressFunction = Callable[[str, float, float, float | None], None]
+SOURCES = "the path of a case file, a case that was loaded, or a dict of its tables"
 NO_FILE = Path("case")  # what messages call a case that is given as tables; its records are sought from here
 
 
@@ -41,7 +43,13 @@ def load(case: CaseSource, set: Mapping[str, Any] | None = None) -> LoadedCase:
     if isinstance(case, LoadedCase):
         return api.load_case(case.path, [*case.overrides, *changes], case.text)
     if isinstance(case, Mapping):
+        if not case:
+            raise UsageError("case: a dict without tables; `dem new wall` prints a case to start from")
         return api.load_case(NO_FILE, changes, text_of_tables(case))
+    if not isinstance(case, str | os.PathLike):
+        raise UsageError(f"case: {show(case)} is not allowed; must be {SOURCES}")
+    if "\n" in str(case):
+        raise UsageError(f"case: a text of several lines is not allowed; must be {SOURCES}, as of tomllib.loads")
     return api.load_case(Path(case), changes)
 
 

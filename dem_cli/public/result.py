@@ -184,6 +184,12 @@ class Result:
     def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the answer, and the collapse as a player while the results are there."""
+        from dem_cli.report.notebook import cell
+
+        return cell(self._results, self.summary, readable=not self._closed)
+
     def __repr__(self) -> str:
         load = "" if self.failure_load is None else f", failure load {self.failure_load:.6g}"
         return f"<Result of {self.summary.get('title') or self._path.name!r}: {self.kind}, {self.status}{load}>"

@@ -22,7 +22,10 @@ SCRIPTS = ("chart.js", "scene.js", "section.js", "marks.js", "eye.js", "player.j
 
 
 def render(data: Mapping[str, Any], **shown: Any) -> str:
-    """The page as text. data: what the scripts read, view, charts or runs; shown: what the template shows."""
+    """The page as text. data: what the scripts read, view, charts or runs; shown: what the template shows.
+
+    brief=True leaves the head and the view, for a cell of a notebook.
+    """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     libraries = [asset(THREE)] if data.get("view") else []
@@ -39,7 +42,7 @@ def render(data: Mapping[str, Any], **shown: Any) -> str:
         style=asset(STYLE_SHEET),
         scripts=scripts,
         data=script_json(data),
-        **shown,
+        **({"brief": False} | shown),
     )
     return text
 

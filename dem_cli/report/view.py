@@ -35,12 +35,12 @@ _FAR_ROUND = 2.0  # rad: who turns farther from frame to frame may have gone the
 _SINGLE = 0.05  # length of a joint of one point, in sizes of its block
 
 
-def view(results: Results) -> dict[str, Any]:
-    """The scene as plain JSON; where the run kept no frames, the structure as it was built."""
+def view(results: Results, most: int = MOST_BYTES) -> dict[str, Any]:
+    """The scene as plain JSON; where the run kept no frames, the structure as it was built. most: bytes of frames."""
     model = results.model
     frames = _shown(results.frames) or [_as_built(model)]
     skin, series = SKINS[model.dimension](model), results.series
-    kept = _within(MOST_BYTES, [_bytes(model, frame) for frame in frames], _always(frames, results.summary))
+    kept = _within(most, [_bytes(model, frame) for frame in frames], _always(frames, results.summary))
     chosen = [frames[i] for i in kept]
     scales = [1.0 if frame.stage == MODE else frame_measures.visible_scale(model, frame) for frame in chosen]
     carried, grounds = stage.carried(results, min(scales)), [stage.ground(series, frame) for frame in chosen]

@@ -157,7 +157,8 @@ def imported(table: Import) -> ImportedStructure:
     from dem_cli.imports.solids import solids_of
 
     try:
-        contents = _kept(table, read(table.file, table.chords))
+        skipped = {name for name, layer in table.layers.items() if layer.skip}
+        contents = _kept(table, read(table.file, table.chords, skip=skipped), skipped)
         factor = table.scale * UNITS[unit_of(contents, table.unit)]
         solids, notes = solids_of(_named(contents.bodies), factor, table)
     except FileProblem as error:
@@ -174,13 +175,14 @@ def _named(bodies: Sequence[FileBody]) -> list[FileBody]:
     return [body if body.name or body.faces else body._replace(name=body.layer) for body in bodies]
 
 
-def _kept(table: Import, contents: Contents) -> Contents:
+def _kept(table: Import, contents: Contents, skipped: set[str]) -> Contents:
     """Without the layers that are skipped. Raises KeyProblem for layers that are not told about, or not there."""
     if not table.layers:
         return contents
     found = Counter(body.layer for body in contents.bodies)
+    unread = skipped & set(contents.layers)  # a drawing is read without them
     for name in table.layers:
-        if name not in found:
+        if name not in found and name not in unread:
             close = get_close_matches(name, [layer for layer in found if layer], 1)
             hint = f", did you mean '{close[0]}'?" if close else f" (it has: {_listed(found)})"
             raise KeyProblem(f"no blocks on '{name}' in the file{hint}", "layers", name)
@@ -190,8 +192,7 @@ def _kept(table: Import, contents: Contents) -> Contents:
         raise KeyProblem(
             f"nothing is said of {found[untold[0]]} blocks on {what}; name it here, or with skip = true", "layers"
         )
-    skipped = {name for name, layer in table.layers.items() if layer.skip}
-    words = [f"{found[name]} blocks on '{name}'" for name in skipped]
+    words = [f"{found[name]} blocks on '{name}'" for name in table.layers if name in skipped - unread]
     bodies = [body for body in contents.bodies if body.layer not in skipped]
     if not bodies:
         raise KeyProblem("every layer is skipped", "layers")

@@ -23,6 +23,7 @@ DRAWN = [suffix for suffix, each in FORMATS.items() if each.flat]
 NOT_UPRIGHT = "an end of the outline is not upright from the foot on: there is no place for quoins"
 Chords = Annotated[int, Field(ge=1, le=100)]
 Loop = Annotated[tuple[Pair, ...], Field(min_length=3)]
+Layers = Annotated[tuple[str, ...], Field(min_length=1)]
 
 
 class DrawnOpening(NamedTuple):
@@ -95,7 +96,11 @@ class WallOutline(CaseModel):
         "default: the only one that has outlines",
         examples=["WALL"],
     )
-    openings: str | None = Field(None, description="layer or group of openings; default: none", examples=["OPENINGS"])
+    openings: str | Layers | None = Field(
+        None,
+        description="layer or group of openings, or a list of them; default: none",
+        examples=["OPENINGS", ["DOORS", "WINDOWS"]],
+    )
     unit: Literal["m", "dm", "cm", "mm", "in", "ft"] | None = Field(
         None, description="of lengths in the file; default: what the file says (DXF), else m", examples=["mm"]
     )
@@ -132,10 +137,15 @@ class WallOutline(CaseModel):
                 raise KeyProblem(f"not used with {'points' if self.file is None else 'file'}", key)
         if self.file is not None:
             _check_file(Path(self.file))
-        if self.layer is not None and self.layer == self.openings:
+        if self.layer is not None and self.layer in self.opening_layers:
             raise KeyProblem("openings on the layer of the outline need not be named", "openings")
         _check(self)
         return self
+
+    @property
+    def opening_layers(self) -> tuple[str, ...]:
+        """The layers or groups of openings; none: those on the layer of the outline are all."""
+        return (self.openings,) if isinstance(self.openings, str) else self.openings or ()
 
     @cached_property
     def drawn(self) -> DrawnElevation:
@@ -144,7 +154,7 @@ class WallOutline(CaseModel):
             given = [("the outline", self.points or ()), *((f"holes.{i}", hole) for i, hole in enumerate(self.holes))]
             return _elevation([(said, np.array(loop, float)) for said, loop in given], ("points", "holes"))
         try:
-            only = [layer for layer in (self.layer, self.openings) if layer] if self.layer else []
+            only = [self.layer, *self.opening_layers] if self.layer else []
             contents = read(self.file, self.chords, only)
             wall, inner = _wall_of(self, contents)
             unit = unit_of(contents, self.unit)
@@ -225,10 +235,11 @@ def _check_file(path: Path) -> None:
 
 def _wall_of(outline: WallOutline, contents: Contents) -> tuple[FileBody, list[FileBody]]:
     """The outline of the wall and those of its openings. Raises KeyProblem."""
-    inner = [body for body in contents.bodies if outline.openings is not None and body.layer == outline.openings]
-    if outline.openings is not None and not inner:
-        raise KeyProblem(f"no closed outline on layer '{outline.openings}'; drawn on: {_names(contents)}", "openings")
-    own = [body for body in contents.bodies if body.layer != outline.openings]
+    inner = [body for body in contents.bodies if body.layer in outline.opening_layers]
+    for layer in outline.opening_layers:
+        if all(body.layer != layer for body in inner):
+            raise KeyProblem(f"no closed outline on layer '{layer}'; drawn on: {_names(contents)}", "openings")
+    own = [body for body in contents.bodies if body.layer not in outline.opening_layers]
     layers = list(dict.fromkeys(body.layer for body in own))
     if outline.layer is None and len(layers) > 1:
         names = ", ".join(f"'{layer}'" for layer in layers)

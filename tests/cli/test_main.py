@@ -49,6 +49,25 @@ def test_linear_algebra_does_not_keep_other_cores_busy():
     assert result.stdout.split() == ["1"]
 
 
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [
+        ("dem re", ["plain,render", "plain,report"]),
+        ("dem run wa", ["file,wa"]),
+        ("dem check --set a=1 wa", ["file,wa"]),
+        ("dem new dru", ["plain,drums"]),
+        ("dem report --op", ["plain,--open"]),
+        ("dem --ver", ["plain,--version"]),
+    ],
+)
+def test_the_tab_key_completes(typed, offered, monkeypatch):
+    """A case is the name of a file, which bash completes by itself; commands are offered without importing any."""
+    monkeypatch.setenv("_DEM_COMPLETE", "bash_complete")
+    monkeypatch.setenv("COMP_WORDS", typed)
+    monkeypatch.setenv("COMP_CWORD", str(typed.count(" ")))
+    assert CliRunner().invoke(main, [], prog_name="dem").output.split() == offered
+
+
 def test_help_is_quick():
     times = []
     for _ in range(5):  # the best of several: other programs run on this machine too

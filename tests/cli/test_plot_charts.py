@@ -169,6 +169,17 @@ def test_a_sweep_without_options(sweep, figures):
     assert legend(figures[0]) == ["courses", "3", "6", "no answer"]
 
 
+def test_a_run_without_failure_load_is_drawn_as_its_bracket(tmp_path, figures):
+    """Runs that ended between two loads were crosses on the axis, as if nothing were known of them."""
+    text = SWEEP.replace("failed,no equilibrium,,,,,", "not converged,no steps left,,0.3,0.5,,")
+    text = text.replace("ok,,0.45,0.44,0.46,rocking,0.0004", "not converged,no steps left,,0.35,,,")
+    assert dem(write_sweep(tmp_path / "sweep", text))[0] == 0
+    drawn = figures[0].axes[0].get_lines()
+    found = {line.get_marker(): (list(line.get_xdata()), list(line.get_ydata())) for line in drawn if line.is_dashed()}
+    assert found == {"_": ([0.7, 0.7], [0.3, 0.5]), "^": ([0.9], [0.35])}
+    assert legend(figures[0]) == ["courses", "3", "6", "bracket, no answer"]
+
+
 def test_columns_of_a_sweep(sweep, figures):
     assert dem(sweep, "-x", "courses", "-y", "displacement at failure", "--by", "friction")[0] == 0
     axis = figures[0].axes[0]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 
 import pytest
 from synthetic.clock import HandClock
@@ -45,11 +46,13 @@ def test_lines_come_every_ten_seconds_and_never_when_quiet(clock):
         assert stream.getvalue().count("\n") == (0 if quiet else 2)
 
 
-def test_a_bar_on_a_terminal():
+def test_a_bar_on_a_terminal_says_which_time_is_which(clock, monkeypatch):
     stream = io.StringIO()
     stream.isatty = lambda: True  # type: ignore[method-assign]
-    with RunCounter(3, stream=stream) as bar:
+    monkeypatch.setenv("COLUMNS", "120")
+    with RunCounter(5, stream=stream) as bar:
         for _ in range(3):
+            clock.now += 6.0
             bar.update(failed=True)
-    assert "3/3" in stream.getvalue()
-    assert "failed" in stream.getvalue()
+    shown = re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", stream.getvalue())
+    assert re.search(r"3/5 runs, 3 failed  6.0 s a run \d:\d\d:\d\d so far  about 12 s left\n", shown)

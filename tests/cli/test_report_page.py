@@ -9,12 +9,16 @@ import json
 
 import numpy as np
 import pytest
-from shown.opened import near, until
+from shown.opened import Opened, near, until
 from synthetic import LENGTH, wall_frames, wall_model
 from synthetic.pages import HOSTILE
 
+import dem_cli
 from dem_cli.output.scalars import scalars
 
+SMALL = """const touched = document.querySelectorAll("button, select, summary, label, input:not([type=checkbox])");
+const low = (box) => box.width > 0 && (box.width < 44 || box.height < 44);
+return [...touched].filter((e) => low(e.getBoundingClientRect())).map((e) => e.outerHTML)"""
 SKY, DARK_SKY = (0xE9, 0xEE, 0xF3), (0x1E, 0x20, 0x23)  # of assets/scene.js
 
 
@@ -135,6 +139,7 @@ def test_small_screens_and_the_dark(opened, browser):
         for name in ("sweep", "solid", "wall"):
             page = opened(name)
             assert page.run("return document.documentElement.scrollWidth") == 390
+            assert page.run(SMALL) == []
         corner = page.box("canvas")[:2] + np.array((6, 60))
         assert near(page.colour(corner), DARK_SKY)
         page.find("#theme").click()
@@ -142,6 +147,25 @@ def test_small_screens_and_the_dark(opened, browser):
     finally:
         browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+
+def test_a_cell_of_a_notebook_holds_the_answer_and_a_player(browser, pages, tmp_path):
+    with dem_cli.open(pages["wall"]) as result:
+        (tmp_path / "report.html").write_text(f"<p>a notebook</p>{result._repr_html_()}", encoding="utf-8")
+    page = Opened(browser, tmp_path)
+    assert until(lambda: page.run("return document.querySelector('iframe').offsetHeight > 641"), True)
+    assert page.run("return document.documentElement.scrollWidth <= innerWidth")
+    browser.switch_to.frame(page.find("iframe"))
+    try:
+        assert page.run("return document.documentElement.scrollHeight <= innerHeight + 1")
+        assert page.find(".answer strong").text == "0.6402"
+        before = page.run("return dem.player.at")
+        page.keys(page.part("canvas"), "\ue012")
+        assert page.run("return dem.player.at") == before - 1
+    finally:
+        browser.switch_to.default_content()
+    assert page.complaints() == []
+    assert [url for url in page.requests() if not url.startswith(("file:", "data:", "about:"))] == []
 
 
 def test_without_webgl_the_rest_of_the_page_works(opened, browser):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -97,7 +98,20 @@ def test_interrupted_installation_is_begun_anew(project):
     assert "needs Python 3.11 or newer" in done.stderr
 
 
-@pytest.mark.parametrize("script", ["scripts/run", "scripts/test", "scripts/study", ".ci/run"])
+def test_documentation_finds_what_it_reads(project):
+    """In a fresh clone `scripts/docs` said: No module named 'reference'."""
+    (made_environment(project) / "bin" / "python").write_text(f'#!/usr/bin/env bash\nexec "{sys.executable}" "$@"\n')
+    for name in ("tests", "docs", "dem_cli", "README.md"):
+        (project / name).symlink_to(ROOT / name)
+    done = subprocess.run(
+        [str(project / "scripts" / "docs"), "--help"],
+        env={"PATH": str(project / "bin"), "HOME": str(project)}, cwd="/", capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "--write" in done.stdout
+
+
+@pytest.mark.parametrize("script", ["scripts/run", "scripts/test", "scripts/study", "scripts/docs", ".ci/run"])
 def test_executable(script):
     assert os.access(ROOT / script, os.X_OK)
 

@@ -39,7 +39,16 @@ ALLOWED: dict[str, set[str] | None] = {
         "structures.registry",
         "tables",
     },
-    "public": {"api", "case", "model.model", "output", "pipeline", "post.run_columns", "post.labels"},
+    "public": {
+        "api",
+        "case",
+        "model.model",
+        "output",
+        "pipeline",
+        "post.run_columns",
+        "post.labels",
+        "report.notebook",
+    },
     "pipeline": {
         "analyses.solve",
         "api",

@@ -91,6 +91,8 @@ def test_no_such_file(folder):
         expected(["wall_21: no such file, did you mean 'wall_21.toml'?"]),
     )
     assert run(folder, "run", "zzz") == (2, expected(["zzz: no such file"]))
+    (folder / "pyproject.toml").touch()
+    assert run(folder, "run", "nope.toml") == (2, expected(["nope.toml: no such file"]))
     assert run(folder, "run", "no/a.toml") == (
         2,
         expected(["no/a.toml: no such file (there is no folder 'no')"]),

@@ -94,8 +94,8 @@ def test_killed(tmp_path):
     wait_for_frame(process, 3)
     process.kill()
     assert finish(process)[0] == -signal.SIGKILL
-    (hidden,) = (path for path in tmp_path.iterdir() if path.name.startswith("."))
-    assert names(tmp_path) == [hidden.name, "case.toml"]
+    (hidden,) = tmp_path.glob(".out.dem-new-*")
+    assert names(tmp_path) == [".out.dem-lock", hidden.name, "case.toml"]
     results = read(hidden)
     assert results.status == "running"
     assert len(results.frames) >= 4
@@ -114,7 +114,7 @@ def test_killed_at_any_moment_the_file_stays_readable(tmp_path):
         time.sleep(numbers.uniform(0.0, 0.3))
         process.kill()
         finish(process)
-        (hidden,) = (path for path in folder.iterdir() if path.name.startswith("."))
+        (hidden,) = folder.glob(".out.dem-new-*")
         assert "out" not in names(folder)
         try:
             results = read(hidden)

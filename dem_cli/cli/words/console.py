@@ -72,10 +72,8 @@ class Progress:
             self._bar = _new_bar(self.stream)
             self._task = self._bar.add_task(stage, total=None, where=where, left="")
             self._bar.start()
-        total = None if fraction is None else 1.0
-        self._bar.update(
-            self._task, description=stage, total=total, completed=fraction or 0.0, where=where, left=self._left()
-        )
+        total, said = None if fraction is None else 1.0, {"where": where, "left": self._left()}
+        self._bar.update(self._task, description=stage, total=total, completed=fraction or 0.0, **said)
 
     def stop(self) -> None:
         """Take the bar away."""
@@ -100,7 +98,7 @@ def _new_bar(stream: TextIO) -> Any:
         BarColumn(bar_width=24),
         TextColumn("{task.fields[where]}"),
         TimeElapsedColumn(),
-        TextColumn("{task.fields[left]}"),
+        TextColumn("so far  {task.fields[left]}"),
     )
     return Bar(*columns, console=Console(file=stream), transient=True)
 

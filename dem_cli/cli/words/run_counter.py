@@ -35,7 +35,8 @@ class RunCounter:
         self.failed += failed
         self._ends.append(now)
         if self._bar is not None:
-            self._bar.update(self._task, completed=self.done, speed=self.speed(), failed=self._failures())
+            said = {"speed": self.speed(), "failed": self._failures(), "left": self._left()}
+            self._bar.update(self._task, completed=self.done, **said)
         elif not self.quiet and now >= self._next:
             self._next = now + LINE_EVERY
             print(self.line(), file=self.stream, flush=True)
@@ -52,9 +53,12 @@ class RunCounter:
 
     def line(self) -> str:
         """Where it stands."""
+        pace = ", ".join(filter(None, (self.speed(), self._left())))
+        return f"{self.done:,} of {self.total:,} runs{self._failures()}, {pace}"
+
+    def _left(self) -> str:
         rate = self.rate()
-        left = f", about {seconds((self.total - self.done) / rate)} left" if rate else ""
-        return f"{self.done:,} of {self.total:,} runs{self._failures()}, {self.speed()}{left}"
+        return f"about {seconds((self.total - self.done) / rate)} left" if rate else ""
 
     def _failures(self) -> str:
         return f", {self.failed:,} failed" if self.failed else ""
@@ -62,7 +66,7 @@ class RunCounter:
     def __enter__(self) -> RunCounter:
         if not self.quiet and self.stream.isatty():
             self._bar = _new_bar(self.stream)
-            self._task = self._bar.add_task("runs", total=self.total, completed=self.done, speed="", failed="")
+            self._task = self._bar.add_task("runs", total=self.total, completed=self.done, speed="", failed="", left="")
             self._bar.start()
         return self
 
@@ -74,21 +78,13 @@ class RunCounter:
 
 def _new_bar(stream: TextIO) -> Any:
     from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
     columns = (
         BarColumn(bar_width=24),
         MofNCompleteColumn(),
         TextColumn("{task.description}{task.fields[failed]}  {task.fields[speed]}"),
         TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        TextColumn("so far  {task.fields[left]}"),
     )
     return Progress(*columns, console=Console(file=stream), transient=True)

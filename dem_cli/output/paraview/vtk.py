@@ -11,7 +11,7 @@ import numpy as np
 
 from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
-from dem_cli.output.atomic_file import write_text
+from dem_cli.output.atomic_file import whole_folder, write_text
 from dem_cli.output.folder import write_error
 from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.paraview.cells import cells_of, outlines
@@ -46,25 +46,25 @@ def write_geometry(path: Path, model: Model) -> None:
 
 
 def export_pvd(results: Results, folder: Path) -> list[Path]:
-    """Every frame as blocks_0000.vtu and contacts_0000.vtp, with blocks.pvd and contacts.pvd over them."""
+    """Every frame as blocks_0000.vtu and contacts_0000.vtp, with blocks.pvd and contacts.pvd over them.
+
+    Raises UsageError where there are no frames, and OutputError; then nothing of it is there.
+    """
     if not len(results.frames):
         raise UsageError("the results hold no frames (output.frames = 0), so there is nothing to export")
     model, digits = results.model, max(4, len(str(len(results.frames))))
     series: dict[str, list[str]] = {"blocks": [], "contacts": []}
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with whole_folder(folder) as place:
         for i, frame in enumerate(results.frames):
             files = {
                 f"blocks_{i:0{digits}}.vtu": _blocks(model, frame),
                 f"contacts_{i:0{digits}}.vtp": _points(frame),
             }
             for name, text in files.items():
-                write_text(folder / name, text)
+                (place / name).write_text(text, encoding="utf-8", newline="\n")
                 series[name.split("_")[0]].append(name)
         for kind, names in series.items():
-            write_text(folder / f"{kind}.pvd", _collection(names, times(results)))
-    except OSError as error:
-        raise write_error(error, folder) from None
+            (place / f"{kind}.pvd").write_text(_collection(names, times(results)), encoding="utf-8", newline="\n")
     return [folder / f"{kind}.pvd" for kind in series]
 
 

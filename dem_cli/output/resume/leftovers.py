@@ -84,5 +84,7 @@ def fits(
 
 
 def in_use(final: Path) -> UsageError:
-    """That another run has the leftovers."""
-    return UsageError(f"{final}: another run is writing its results there")
+    """That another run is about to write there."""
+    return UsageError(
+        f"{final}: another run is writing its results there; wait for its end, or choose another folder with -o"
+    )

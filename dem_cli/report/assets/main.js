@@ -22,6 +22,8 @@ function start() {
   }
   if (data.runs) page.runs = new Runs(document.getElementById("runs"), data.runs);
   theme(page);
+  const frame = globalThis.frameElement; // of a notebook: as high as what it holds
+  if (frame && document.body.classList.contains("brief")) frame.style.height = `${document.body.offsetHeight + 4}px`;
 }
 
 /** Light or dark as the system has it, until the reader chooses; light on paper, with nothing folded. */

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 
 import pytest
 
@@ -125,10 +126,31 @@ def test_leftovers_of_killed_runs_go_and_running_ones_stay(tmp_path):
     dead = tmp_path / ".out.dem-new-00000001"
     dead.mkdir()
     (dead / ".lock").write_text("")
+    (tmp_path / ".out.dem-lock").write_text("")
     with OutputFolder(tmp_path / "out") as running:
         assert not dead.exists()
-        with OutputFolder(tmp_path / "out"):
+        with OutputFolder(tmp_path / "out", recover=False):
             assert running.path.exists()
+    assert names(tmp_path) == []
+
+
+@pytest.mark.parametrize("place", ["out", "."])
+def test_a_second_run_into_the_same_folder_is_refused(tmp_path, monkeypatch, place):
+    """Both went on, and the first to end lost its results to the other without a word."""
+    monkeypatch.chdir(tmp_path)
+    put(place, 1)
+    said = "another run is writing its results there; wait for its end, or choose another folder with -o"
+    with OutputFolder(place) as first:
+        with pytest.raises(UsageError, match=f"^{re.escape(place)}: {said}"):
+            OutputFolder(place)
+        with pytest.raises(UsageError, match=said):
+            OutputFolder(tmp_path / place, force=True)
+        fill(first.path, 2)
+        final = first.commit()
+    assert (final / "results.h5").read_text() == "2"
+    put(place, 3)
+    assert (final / "results.h5").read_text() == "3"
+    assert names(final) == ["results.h5", "summary.json"]
 
 
 def test_results_put_aside_by_a_killed_run_come_back(tmp_path):

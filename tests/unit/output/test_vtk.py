@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from synthetic import history_rows, wall_frames, wall_model, wall_summary
 
-from dem_cli.errors import UsageError
+from dem_cli.errors import OutputError, UsageError
 from dem_cli.output.paraview.fields import block_fields, contact_fields, turning_fields
 from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
 from dem_cli.output.paraview.vtk import export_pvd, write_geometry
@@ -86,6 +86,34 @@ def test_export(tmp_path):
             else:
                 np.testing.assert_array_equal(points[:, :2], frame.contacts.points.astype(np.float32))
                 assert_fields(point_data, contact_fields(frame.contacts))
+
+
+@pytest.mark.parametrize(("there", "error"), [(False, OSError(28, "full")), (True, KeyboardInterrupt())])
+def test_an_export_that_fails_leaves_nothing(tmp_path, monkeypatch, there, error):
+    """The folder stayed, with the frames up to the one that failed and no .pvd over them."""
+    from dem_cli.output.paraview import vtk
+
+    writer = ResultWriter(tmp_path, wall_model(), "", {}, ["top"])
+    for frame in wall_frames(wall_model(), 4):
+        writer.frame(frame)
+    writer.close(wall_summary())
+    place = tmp_path / "a" / "pvd"
+    if there:
+        place.mkdir(parents=True)
+        (place / "blocks_0000.vtu").write_text("earlier")
+    written = iter(range(3))
+
+    def points(frame):
+        if next(written) == 2:
+            raise error
+        return ""
+
+    monkeypatch.setattr(vtk, "_points", points)
+    with pytest.raises((OutputError, KeyboardInterrupt)):
+        export_pvd(read(tmp_path), place)
+    assert (tmp_path / "a").exists() is there
+    if there:
+        assert [(path.name, path.read_text()) for path in place.iterdir()] == [("blocks_0000.vtu", "earlier")]
 
 
 def test_nothing_to_export(tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from html import unescape
 
 import h5py
 import numpy as np
@@ -51,6 +52,19 @@ def test_summary(wall):
     assert 'title = "A small wall"' in wall.case
     assert wall.provenance["dem"] == dem_cli.__version__
     assert wall.model.block_ids[-1] in wall.model.block_ids
+
+
+def test_a_notebook_shows_the_answer_and_a_player_until_the_results_are_closed(wall):
+    shown = unescape(wall._repr_html_())
+    assert shown.startswith('<iframe srcdoc="<!doctype html>')
+    assert f"<strong>{wall.failure_load:.4f}</strong>" in shown
+    assert 'id="view"' in shown
+    assert "How to run it again" not in shown
+    with dem_cli.open(wall.path) as again:
+        pass
+    shown = again._repr_html_()
+    assert f"{wall.failure_load:.4f}" in shown
+    assert 'id="view"' not in unescape(shown)
 
 
 def test_history(wall):

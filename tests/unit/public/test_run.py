@@ -156,6 +156,10 @@ def test_a_mistake_comes_from_another_process():
         (COLUMN, {"seed": None}, UsageError, "set seed: None is no value of a case file"),
         (COLUMN | {"gravty": 9.81}, {}, CaseError, "gravty: unknown key, did you mean 'gravity'?"),
         ("no_such.toml", {}, UsageError, "no_such.toml: no such file"),
+        ({}, {}, UsageError, "case: a dict without tables; `dem new wall` prints a case to start from"),
+        ([1], {}, UsageError, "case: [1] is not allowed; must be the path of a case file, a case that was loaded, or"),
+        (None, {}, UsageError, "case: None is not allowed"),
+        ("title = 'x'\n[materials]\n", {}, UsageError, "case: a text of several lines is not allowed; must be"),
     ],
 )  # fmt: skip
 def test_a_mistake_is_one_message(case, changes, error, message, temporary):
@@ -164,6 +168,17 @@ def test_a_mistake_is_one_message(case, changes, error, message, temporary):
     assert message in str(caught.value)
     assert len(str(caught.value).splitlines()) == 1
     assert list(temporary.iterdir()) == []
+
+
+def test_a_notebook_shows_what_was_asked_for_and_the_message():
+    """IPython asks an exception for its own words before it prints forty lines of traceback."""
+    with pytest.raises(CaseError) as caught:
+        dem_cli.load(COLUMN, {"joints.dry.friction": -1.0})
+    assert caught.value._render_traceback_() == [
+        'in: dem_cli.load(COLUMN, {"joints.dry.friction": -1.0})',
+        "CaseError: set joints.dry.friction: -1 is not allowed; must be a number ≥ 0 and ≤ 1000",
+    ]
+    assert UsageError("a\nb")._render_traceback_() == ["UsageError: a", "b"]
 
 
 @pytest.mark.parametrize("threads", [0, -1, 1.5, "2"])

@@ -176,7 +176,29 @@ def test_a_facade_in_dxf_has_its_layers_units_and_names(tmp_path):
         read(path, layers={"stone": {}, "lintel": {}})
     with pytest.raises(KeyProblem, match="no blocks on 'stones' in the file, did you mean 'stone'"):
         read(path, layers={"stones": {}})
-    assert len(read(path, layers=layers | {"lintel": {"skip": True}}).blocks) == 86
+    without = read(path, layers=layers | {"lintel": {"skip": True}})
+    assert len(without.blocks) == 86
+    assert without.notes[1] == "left out: 1 on layer 'lintel', 1 TEXT"
+
+
+def test_a_layer_that_is_skipped_is_not_read(tmp_path):
+    """Lines that do not close, or a curve, on a layer with skip = true stopped the run."""
+    import ezdxf
+
+    drawing = ezdxf.new(units=6)
+    drawing.layers.add("axes")
+    space = drawing.modelspace()
+    space.add_lwpolyline(SQUARE, close=True, dxfattribs={"layer": "stone"})
+    space.add_line((0, -1), (5, -1), dxfattribs={"layer": "axes"})
+    space.add_circle((2, 2), 0.5, dxfattribs={"layer": "axes"})
+    space.add_arc((2, 2), 0.5, 0, 90, dxfattribs={"layer": "axes"})
+    drawing.saveas(tmp_path / "a.dxf")
+    svg = '<svg xmlns="http://www.w3.org/2000/svg"><g id="stone"><rect width="1" height="1"/></g>'
+    (tmp_path / "a.svg").write_text(f'{svg}<g id="axes"><path d="M 0 0 L 1 5"/><circle r="1"/></g></svg>')
+    for name, said in (("a.dxf", "left out: 3 on layer 'axes'"), ("a.svg", "left out: 2 on group 'axes'")):
+        found = read(tmp_path / name, layers={"stone": {}, "axes": {"skip": True}})
+        assert [block.id for block in found.blocks] == ["stone"]
+        assert said in found.notes
 
 
 def test_a_unit_that_is_not_read_is_asked_for_and_layers_are_no_names_of_parts(tmp_path):

@@ -152,6 +152,8 @@ def test_what_is_wrong_in_a_drawing_is_said_with_its_entity(tmp_path, drawn):
         ("open", None): f"bad.dxf: layer 'open': {handles['open']} ends at",
         ("crossed", None): f"bad.dxf: {handles['crossed']} on layer 'crossed': its outline crosses or touches itself",
         ("good", "far"): f"{handles['far']} on layer 'far' reaches out of the outline of the wall",
+        ("good", ("far", "open")): f"bad.dxf: layer 'open': {handles['open']} ends at",
+        ("good", ("good",)): "openings on the layer of the outline need not be named",
         ("god", None): "nothing is drawn on a layer 'god'; layers with something on them: 'open', 'crossed', 'good'",
     }
     for (layer, openings), message in said.items():
@@ -161,6 +163,22 @@ def test_what_is_wrong_in_a_drawing_is_said_with_its_entity(tmp_path, drawn):
     for key, value in {"courses": 4, "length": 6.0, "gable": {"height": 1.0}}.items():
         with pytest.raises(ValidationError, match="not used with outline"):
             GENERATORS["wall"].parameters.model_validate(WALLS["blocks"] | {"outline": drawn, key: value})
+
+
+def test_openings_may_be_drawn_on_several_layers(tmp_path):
+    import ezdxf
+
+    drawing = ezdxf.new(units=6)
+    for layer, (x0, y0, x1, y1) in {"wall": (0, 0, 6, 3), "doors": (1, 0, 2, 2), "windows": (3, 1, 4, 2)}.items():
+        shape = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+        drawing.modelspace().add_lwpolyline(shape, close=True, dxfattribs={"layer": layer})
+    drawing.saveas(tmp_path / "f.dxf")
+    keys = {"file": str(tmp_path / "f.dxf"), "layer": "wall", "openings": ["doors", "windows"]}
+    table = GENERATORS["wall"].parameters.model_validate(WALLS["blocks"] | {"outline": keys})
+    assert [each.spanned(None).x for each in table.outline.drawn.openings] == [1.0, 3.0]
+    keys = {"file": keys["file"], "openings": ["doors", "windows", "arches"]}
+    with pytest.raises(ValidationError, match="no closed outline on layer 'arches'; drawn on: 'wall', 'doors', 'windo"):
+        GENERATORS["wall"].parameters.model_validate(WALLS["blocks"] | {"outline": keys})
 
 
 def test_svg_groups_are_layers(tmp_path):
