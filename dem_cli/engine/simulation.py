@@ -24,7 +24,7 @@ from dem_cli.geometry.rotation import rotation_vectors
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.fixed_joints import FixedJoints
-from dem_cli.kernels.jit import CompiledKernel
+from dem_cli.kernels.jit import CompiledKernel, threads_may_share
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.links.link import Springs
@@ -261,7 +261,7 @@ class Simulation:
 
     def _step(self, n_steps: int, mode: int) -> int:
         """A call of the compiled loop: how many steps it did before joints had to be looked for."""
-        threads = 1 if n_steps == 0 else self.threads
+        threads = self.threads if n_steps > 0 and threads_may_share() else 1
         members = self.tracking.assemble(self.law.n_of_lanes, threads) if self.tiled else 1
         scene = (
             self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links, self.loads, self.control,

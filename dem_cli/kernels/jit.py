@@ -1,19 +1,20 @@
 """The one door to numba: `@kernel` for compiled entry points, `@inline` for what they call.
 
-Numba is loaded when a kernel is first compiled (kernels/compilation/machine_code.py), a third of a second: what was
-kept of an earlier process (kept_code.py), or is called `uncompiled`, does without.
+Numba is loaded when a kernel is first compiled (kernels/compilation/door.py), a third of a second: what was kept of an
+earlier process (kept_code.py), or is called `uncompiled`, does without.
 """
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
 import numpy as np
 
-from dem_cli.kernels.compilation.kept_code import OtherTypes, kept_kernel
+from dem_cli.kernels.compilation.door import Door, literal_unroll
+from dem_cli.kernels.compilation.kinds import OtherTypes
+from dem_cli.kernels.compilation.switch import SWITCH
 
 __all__ = [
     "CompiledKernel",
@@ -24,52 +25,11 @@ __all__ = [
     "literal_unroll",
     "named",
     "overload",
+    "threads_may_share",
     "uncompiled",
 ]
 
-Declaration = tuple[str, Callable, Any]  # name of a function in machine_code.py, and what it is given
-
-
-class _Door:
-    """What was declared before numba was there, and whether kernels are to run without it."""
-
-    def __init__(self) -> None:
-        self.open, self.uncompiled, self.lock = False, 0, threading.RLock()
-        self.waiting: list[Declaration] = []
-
-    def declare(self, *declaration: Any) -> None:
-        """Tells numba of a function, at once or when it comes."""
-        with self.lock:
-            if self.open:
-                self._tell(*declaration)
-            else:
-                self.waiting.append(declaration)
-
-    def kept(self, function: Callable, arguments: tuple[Any, ...]) -> Callable | None:
-        """The function as machine code from an earlier process, for such arguments, without numba."""
-        with self.lock:
-            return kept_kernel(function, arguments)
-
-    def compiled(self, function: Callable) -> Callable:
-        """The function as machine code; loads numba."""
-        from dem_cli.kernels.compilation.machine_code import compiled
-
-        with self.lock:
-            self.open = True
-            while self.waiting:
-                self._tell(*self.waiting.pop(0))
-            return compiled(function)
-
-    @staticmethod
-    def _tell(how: str, function: Any, given: Any) -> None:
-        from dem_cli.kernels.compilation import machine_code
-
-        if function.__globals__.get("literal_unroll") is literal_unroll:
-            function.__globals__["literal_unroll"] = machine_code.literal_unroll  # which numba knows by itself
-        getattr(machine_code, how)(function, given)
-
-
-_door = _Door()
+_door = Door()
 
 
 class CompiledKernel:
@@ -79,6 +39,7 @@ class CompiledKernel:
         self.py_func = function
         self._kept: list[Callable] = []  # for arguments of some types each
         self._machine_code: Any = None
+        self._way: Any = None  # that it was made
 
     def __call__(self, *arguments: Any) -> Any:
         """Runs the compiled code; compiles it, or loads it, at the first call with these types."""
@@ -93,7 +54,13 @@ class CompiledKernel:
             if found is not None:
                 self._kept.append(found)
                 return found(*arguments)
-        return (self._machine_code or self._made())(*arguments)
+        made = self._made()
+        try:
+            return made(*arguments)
+        except Exception as error:
+            if not _door.fails(self._way, made, arguments, error):
+                raise
+        return self._made()(*arguments)
 
     def bound(self) -> Callable:
         """The compiled code itself, for more calls with the objects of the last one: it does not look at types, 7 µs.
@@ -104,16 +71,21 @@ class CompiledKernel:
             return self
         if self._machine_code is None and self._kept:
             return self._kept[0] if len(self._kept) == 1 else self
-        overloads = list((self._machine_code or self._made()).overloads.values())
-        return overloads[0].entry_point if len(overloads) == 1 else self
+        made = self._made()
+        bound: Callable = self._way.bound(made)
+        return self if bound is made else bound
 
     def _made(self) -> Any:
-        self._machine_code = _door.compiled(self.py_func)
+        if self._machine_code is None or self._way is not _door.way:
+            self._machine_code, self._way = _door.compiled(self.py_func)
         return self._machine_code
+
+    def __deepcopy__(self, known: dict[int, Any]) -> CompiledKernel:
+        return self
 
     def __getattr__(self, name: str) -> Any:
         """What numba knows of it."""
-        return getattr(self._machine_code or self._made(), name)
+        return getattr(self._made(), name)
 
 
 def kernel(function: Callable) -> CompiledKernel:
@@ -133,6 +105,11 @@ def uncompiled() -> Iterator[None]:
         yield
     finally:
         _door.uncompiled -= 1
+
+
+def threads_may_share() -> bool:
+    """Whether threads that run one compiled loop may add to the same arrays: numba as it comes has nothing for that."""
+    return SWITCH.own_way()
 
 
 def inline(function: Callable) -> Callable:
@@ -158,14 +135,12 @@ def overload(function: Callable) -> Callable:
 
 
 def built_in(function: Callable) -> Callable:
-    """For what compiled code has LLVM code for: kernels/compilation/views.py, by its name."""
+    """For what compiled code has LLVM code for, by its name: kernels/compilation/views.py, atomics.py, bits.py.
+
+    Where kernels are compiled by numba as it comes, it does what it does in Python.
+    """
     _door.declare("declare_built_in", function, None)
     return function
-
-
-def literal_unroll(links: tuple) -> tuple:
-    """For loops over tuples of records of several types."""
-    return links
 
 
 def named(function: Callable, *parts: Callable | str) -> Callable:

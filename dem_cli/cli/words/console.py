@@ -109,10 +109,16 @@ MOST_TURNS = 6  # of a load path, in one line
 
 
 def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbose: bool = False) -> str:
-    """The result of a run as text: the failure load first, then how sure it is and where everything lies."""
+    """The result of a run as text: the failure load first, then how sure it is and where everything lies.
+
+    verbose: what was skipped as well, and why kernels took longer than they need.
+    """
     rows = answer_rows(summary) + [("warning", text) for text in summary.get("warnings", ())]
     if verbose:
+        from dem_cli.kernels.compilation.switch import SWITCH
+
         rows += [("skipped", text) for text in summary.get("skipped", ())]
+        rows += [("compilation", text) for text in SWITCH.said()]
     rows.append(("written to", f"{folder} ({', '.join(files)})"))
     return "\n".join([str(summary["title"]), *(f"  {label:<14} {text}" for label, text in rows)])
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from typing import Any
 
 from numba import types
@@ -10,7 +11,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 from numba.np.arrayobj import make_array
 
-__all__ = ["add", "give_core_away", "seen"]
+__all__ = ["ATOMICS"]
 
 _YIELD = "SwitchToThread" if os.name == "nt" else "sched_yield"
 
@@ -53,3 +54,10 @@ def give_core_away(typing_context: Any) -> Any:
         return context.get_dummy_value()
 
     return types.void(), code
+
+
+ATOMICS: dict[str, Callable] = {  # what the types of arguments make of functions of kernels/tiles/team.py
+    "add_at_once": lambda array, index, amount: lambda array, index, amount: add(array, index, amount),
+    "now_at": lambda array, index: lambda array, index: seen(array, index),
+    "give_way": lambda: lambda: give_core_away(),
+}

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-__all__ = ["lowest"]
+__all__ = ["BITS"]
 
 
 @intrinsic
@@ -19,3 +20,6 @@ def lowest(typing_context: Any, bits: Any) -> Any:
         return builder.cttz(arguments[0], cgutils.true_bit)
 
     return types.int64(types.int64), code
+
+
+BITS: dict[str, Callable] = {"lowest_bit": lambda bits: lambda bits: lowest(bits)}  # of kernels/tiles/lanes.py

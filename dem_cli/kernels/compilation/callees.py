@@ -2,14 +2,12 @@
 
 Numba makes of each of them a wrapper for C, optimises it and turns it into machine code that nothing ever runs: the
 kernel takes its LLVM code in, optimises it where it stands and is all that is executed. A kernel has up to a hundred.
-Numba does not promise to keep what this takes: versions that it was not tried with compile callees as they do.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-import numba
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_machinery import FunctionPass, PassManager, register_pass
@@ -23,10 +21,8 @@ from numba.core.typed_passes import (
 from numba.core.untyped_passes import InlineClosureLikes, WithLifting
 
 from dem_cli.kernels.compilation.entries import KernelLowering
-from dem_cli.kernels.compilation.references import pass_records_by_reference
-from dem_cli.kernels.compilation.shortcuts import take_shortcuts
 
-__all__ = ["CALLEE", "KERNEL"]
+__all__ = ["CALLEE", "KERNEL", "CalleeCompiler"]
 
 
 class _NoProcess:
@@ -131,11 +127,5 @@ class KernelCompiler(CalleeCompiler):
         return [passes]
 
 
-TRIED = "0.68."  # numba
-CALLEE: dict[str, Any] = {}  # options of numba's `jit`
-KERNEL: dict[str, Any] = {}
-if numba.__version__.startswith(TRIED):
-    CALLEE = {"pipeline_class": CalleeCompiler, "no_cfunc_wrapper": True}
-    KERNEL = {"pipeline_class": KernelCompiler}
-    take_shortcuts(CalleeCompiler)
-    pass_records_by_reference()
+CALLEE: dict[str, Any] = {"pipeline_class": CalleeCompiler, "no_cfunc_wrapper": True}  # options of numba's `jit`
+KERNEL: dict[str, Any] = {"pipeline_class": KernelCompiler}

@@ -19,20 +19,21 @@ from numba.core.lowering import Lower
 from numba.core.typed_passes import NativeLowering
 from numba.np import numpy_support
 
-from dem_cli.kernels.compilation.kept_code import Header, keep, may_be_kept, words_of_kind
+from dem_cli.kernels.compilation.kept_code import Header, keep, may_be_kept
+from dem_cli.kernels.compilation.kinds import WORD, words_of_kind
 from dem_cli.kernels.compilation.references import Record
+from dem_cli.kernels.compilation.switch import SWITCH
 
 __all__ = ["KernelLowering", "keep_compiled"]
 
-_WORD = 8  # bytes
-_RESULTS = {types.int64: "i", types.float64: "d", types.none: ""}
+_RESULTS = {types.int64: "i", types.float64: "d", types.boolean: "b", types.none: ""}
 _OF_PYTHON = re.compile(r"(NRT_|numba_|Py|_Py|\.numba)")  # names of what only numba and Python have
 _NEVER_DONE = {"NRT_incref", "NRT_decref", "NRT_MemInfo_call_dtor"}  # to arrays whose memory somebody else counts
 _NAMES = re.compile(r'@"?([\w.$]+)"?')
 
 
 def kind_of_type(kind: types.Type) -> str | None:
-    """As `kept_code.kind_of` says it of a value; None where there is no such value."""
+    """As `kinds.kind_of` says it of a value; None where there is no such value."""
     if isinstance(kind, types.Array):
         if kind.layout != "C" or not kind.aligned:
             return None
@@ -49,10 +50,10 @@ def kind_of_type(kind: types.Type) -> str | None:
     return None
 
 
-def _kinds(of: Any) -> list[str]:
-    """Of the arguments of a function; empty where its code is not kept."""
-    kinds = [kind_of_type(each) for each in of.argtypes]
-    return [] if None in kinds or of.restype not in _RESULTS or not may_be_kept() else [str(kind) for kind in kinds]
+def _hindrance(of: Any) -> str:
+    """Why a function gets no entry, of what it takes and returns; nothing where it gets one."""
+    taken = [f"it takes {each}" for each in of.argtypes if kind_of_type(each) is None]
+    return next(iter(taken), "" if of.restype in _RESULTS else f"it returns {of.restype}")
 
 
 class KernelLower(Lower):
@@ -61,18 +62,18 @@ class KernelLower(Lower):
     def create_cfunc_wrapper(self) -> None:
         """Adds the entry."""
         of, context = self.fndesc, self.context
-        kinds = _kinds(of)
-        if not kinds:
+        if _hindrance(of) or not may_be_kept():
             return
+        kinds = [str(kind_of_type(each)) for each in of.argtypes]
         module = context.create_module("entry")
         kernel = ir.Function(module, context.call_conv.get_function_type(of.restype, of.argtypes), of.llvm_func_name)
-        result = context.get_value_type(of.restype) if _RESULTS[of.restype] else ir.VoidType()
+        result = {"": ir.VoidType(), "b": ir.IntType(64)}.get(_RESULTS[of.restype], context.get_value_type(of.restype))
         entry = ir.Function(module, ir.FunctionType(result, [ir.IntType(64).as_pointer()]), of.llvm_cfunc_wrapper_name)
         builder = ir.IRBuilder(entry.append_basic_block("entry"))
         (frame,), here, values = entry.args, 1, []
         for argument, kind in zip(of.argtypes, kinds, strict=True):
             like = context.get_value_type(argument)
-            assert context.get_abi_sizeof(like) == _WORD * words_of_kind(kind), argument
+            assert context.get_abi_sizeof(like) == WORD * words_of_kind(kind), argument
             place = builder.bitcast(builder.gep(frame, [ir.Constant(ir.IntType(64), here)]), like.as_pointer())
             values.append(builder.load(place))
             here += words_of_kind(kind)
@@ -80,6 +81,7 @@ class KernelLower(Lower):
             builder, kernel, of.restype, of.argtypes, values, attrs=("noinline",)
         )
         builder.store(builder.sext(status.code, ir.IntType(64)), frame)
+        found = builder.zext(found, result) if _RESULTS[of.restype] == "b" else found
         builder.ret(found) if _RESULTS[of.restype] else builder.ret_void()
         self.library.add_ir_module(module)
 
@@ -97,19 +99,23 @@ class KernelLowering(NativeLowering):
 
 
 def keep_compiled(function: Callable, of: Any, code: bytes, module: Any) -> None:
-    """Keeps what numba compiled, if it can run without numba: it neither allocates nor raises.
+    """Keeps what numba compiled, if it can run without numba: it neither allocates nor raises. Says it where it cannot.
 
     of: numba's description of the function; code, module: of its object code, and LLVM's module that this was made of.
     """
-    kinds, entry = _kinds(of), of.llvm_cfunc_wrapper_name
-    if not kinds:
+    if not may_be_kept():
+        return
+    entry, hindrance = of.llvm_cfunc_wrapper_name, _hindrance(of)
+    called = set() if hindrance else _called(str(module), entry) - _NEVER_DONE
+    of_python = sorted(name for name in called if _OF_PYTHON.match(name))
+    if hindrance or of_python or entry not in called:
+        why = hindrance or (f"it calls {of_python[0]}" if of_python else "it has no entry")
+        SWITCH.remark(f"numba is loaded in each process for {function.__module__}.{function.__qualname__}: {why}")
         return
     undefined = _undefined(code)
-    called = _called(str(module), entry) - _NEVER_DONE
     needed = sorted(name for name in undefined if name in called or not _OF_PYTHON.match(name))
-    if entry in called and not any(_OF_PYTHON.match(name) for name in called):
-        header = Header(kinds, _RESULTS[of.restype], entry, needed, sorted(undefined - set(needed)), 0)
-        keep(function, header, code)
+    kinds = [str(kind_of_type(each)) for each in of.argtypes]
+    keep(function, Header(kinds, _RESULTS[of.restype], entry, needed, sorted(undefined - set(needed)), 0), code)
 
 
 def _called(text: str, entry: str) -> set[str]:

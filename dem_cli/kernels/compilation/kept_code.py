@@ -14,7 +14,6 @@ import hashlib
 import json
 import os
 import platform
-import struct
 import sys
 import zlib
 from array import array
@@ -25,18 +24,13 @@ from pathlib import Path
 from threading import get_ident
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from dem_cli.kernels.compilation.cache_folder import cache_folder, fingerprint
+from dem_cli.kernels.compilation.kinds import WORD, OtherTypes, kind_of, words_of, words_of_kind
 
-__all__ = ["Header", "KeptKernel", "OtherTypes", "keep", "kept_kernel", "may_be_kept", "words_of_kind"]
+__all__ = ["Header", "KeptKernel", "keep", "kept_kernel", "may_be_kept"]
 
-_PACKAGE = __name__.partition(".")[0]
 _HARMLESS = {"NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS"}  # options of numba that machine code does not depend on
-_RESULTS: dict[str, Any] = {"i": ctypes.c_int64, "d": ctypes.c_double, "": None}
-_WORD = 8  # bytes
-_NUMBERS = {"i": (int, np.int64), "d": (float, np.float64)}
-_KINDS = {kind: word for word, of in _NUMBERS.items() for kind in of}
+_RESULTS: dict[str, Any] = {"i": ctypes.c_int64, "d": ctypes.c_double, "b": ctypes.c_bool, "": None}
 _engines: list[Any] = []  # of LLVM, which own the code that runs
 
 
@@ -44,82 +38,14 @@ class Header(NamedTuple):
     """What a file says of the code in it."""
 
     kinds: list[str]  # of the arguments
-    result: str  # "i", "d" or "" (nothing)
+    result: str  # "i", "d", "b" or "" (nothing)
     entry: str  # name of the function to be called
     needed: list[str]  # functions that it calls, by name
     unused: list[str]  # that others in the file call, which nobody calls
     check: int  # sum of all before and of the code
 
 
-class OtherTypes(TypeError):
-    """Arguments of other types than the code was compiled for."""
-
-
-# -- arguments -------------------------------------------------------------------------------------
-
-
-def kind_of(value: Any) -> str:
-    """Type of an argument as machine code knows it: `entries.kind_of_type` says the same of numba's types.
-
-    Raises OtherTypes for what is never kept.
-    """
-    kind = type(value)
-    if kind is np.ndarray:
-        flags = value.flags
-        if flags.c_contiguous and flags.aligned:
-            return f"{value.dtype.str}{value.ndim}{'' if flags.writeable else 'r'}"
-        raise OtherTypes
-    if kind in _KINDS:
-        return _KINDS[kind]
-    if kind is tuple:
-        return f"({' '.join(map(kind_of, value))})"
-    if isinstance(value, tuple) and kind.__module__.partition(".")[0] == _PACKAGE:
-        return f"{kind.__name__}[{' '.join(map(kind_of, value))}]"
-    raise OtherTypes
-
-
-def _words(value: Any, held: list[Any]) -> list[int]:
-    """An argument as numba lays it out; held: what must live as long as that is used."""
-    kind = type(value)
-    if kind is np.ndarray:
-        held.append(value)
-        address = value.__array_interface__["data"][0]
-        return [0, 0, value.size, value.itemsize, address, *value.shape, *value.strides]
-    if kind in _NUMBERS["d"]:
-        return [_as_word(value)]
-    if kind in _NUMBERS["i"]:
-        return [int(value)]
-    members = [word for each in value for word in _words(each, held)]
-    if kind is tuple:
-        return members
-    record = array("q", members)
-    held.append(record)
-    return [record.buffer_info()[0]]
-
-
-def _as_word(value: float) -> int:
-    return int(struct.unpack("q", struct.pack("d", value))[0])
-
-
-def words_of_kind(kind: str) -> int:
-    """Words that an argument of a kind takes in the frame."""
-    if kind in _NUMBERS or kind.endswith("]"):
-        return 1
-    if kind.startswith("("):
-        return sum(map(words_of_kind, _members(kind[1:-1])))
-    return 5 + 2 * int(kind.rstrip("r")[3:])
-
-
-def _members(kinds: str) -> list[str]:
-    """Kinds in a tuple, which may hold others."""
-    found, depth = [""], 0
-    for letter in kinds:
-        depth += (letter in "([") - (letter in ")]")
-        if letter == " " and not depth:
-            found.append("")
-        else:
-            found[-1] += letter
-    return [kind for kind in found if kind]
+# -- calls -----------------------------------------------------------------------------------------
 
 
 class _Frame:
@@ -127,7 +53,7 @@ class _Frame:
 
     def __init__(self, places: list[int], size: int, n: int) -> None:
         self.places = places
-        self.words = array("q", bytes(_WORD * size))
+        self.words = array("q", bytes(WORD * size))
         self.address = self.words.buffer_info()[0]
         self.last: list[Any] = [None] * n
         self.held: list[list[Any]] = [[] for _ in range(n)]
@@ -172,7 +98,7 @@ class KeptKernel:
             raise OtherTypes
         else:
             held: list[Any] = []
-            words = array("q", _words(value, held))
+            words = array("q", words_of(value, held))
             frame.words[here : here + len(words)] = words
             frame.held[place] = held
         frame.last[place] = value
@@ -188,7 +114,7 @@ def may_be_kept() -> bool:
     return (
         sys.platform == "linux"
         and platform.machine() == "x86_64"
-        and ctypes.sizeof(ctypes.c_void_p) == _WORD
+        and ctypes.sizeof(ctypes.c_void_p) == WORD
         and not options - _HARMLESS
         and not Path(".numba_config.yaml").exists()
     )
@@ -228,12 +154,17 @@ def kept_kernel(function: Callable, arguments: tuple[Any, ...]) -> KeptKernel | 
     try:
         kinds = [kind_of(value) for value in arguments]
         first, _, code = _file(function, kinds).read_bytes().partition(b"\n")
+    except (OtherTypes, OSError):
+        return None
+    try:
         header = Header(**json.loads(first))
         if header.kinds != kinds or _check(header, code) != header.check:
             return None
-        return KeptKernel(header, _linked(header, code))
-    except (OtherTypes, OSError, ValueError, TypeError, ImportError):
+    except (ValueError, TypeError):
         return None
+    with suppress(OSError):
+        return KeptKernel(header, _linked(header, code))
+    return None
 
 
 def _linked(header: Header, code: bytes) -> Callable[[int], Any]:

@@ -1,62 +1,44 @@
-"""Machine code of kernels: the side of the door behind which numba is, loaded when a kernel is to be compiled."""
+"""Machine code of kernels, the own way: declared, compiled and kept by what this folder adds to numba."""
 
 from __future__ import annotations
 
-import gc
 import importlib
-import os
 import sys
 import uuid
 from collections.abc import Callable
+from pickle import UnpicklingError
 from typing import Any, cast
 
 import numba
 from llvmlite.binding import parse_bitcode
-from numba import literal_unroll, types
-from numba.core import event
+from numba import types
 from numba.core.caching import FunctionCache
 from numba.core.runtime.nrt import rtsys
 from numba.extending import lower_builtin, register_jitable, type_callable
 from numba.extending import overload as numba_overload
 
+from dem_cli.kernels.compilation.atomics import ATOMICS
+from dem_cli.kernels.compilation.bits import BITS
 from dem_cli.kernels.compilation.cache_folder import cache_folder, fingerprint
-from dem_cli.kernels.compilation.callees import CALLEE, KERNEL
-from dem_cli.kernels.compilation.compile_time import LISTENING
+from dem_cli.kernels.compilation.callees import CALLEE, KERNEL, CalleeCompiler
 from dem_cli.kernels.compilation.entries import keep_compiled
+from dem_cli.kernels.compilation.numba_setup import set_up_numba
+from dem_cli.kernels.compilation.references import pass_records_by_reference
+from dem_cli.kernels.compilation.shortcuts import take_shortcuts
+from dem_cli.kernels.compilation.switch import SWITCH
 from dem_cli.kernels.compilation.views import CODE, TYPES
 
-__all__ = ["compiled", "declare_built_in", "declare_callee", "declare_overload", "literal_unroll"]
-
-
-class Outermost(event.Listener):
-    """Hears where compilation of a kernel begins and ends, not that of what it calls, and tells who asked.
-
-    Python collects no garbage meanwhile: it would look at a million live objects again and again, which was a fifth of
-    the time of compilation.
-    """
-
-    _depth, _collecting = 0, False
-
-    def on_start(self, event: event.Event) -> None:
-        """A kernel, or something inside of it."""
-        if not self._depth:
-            for each in LISTENING:
-                each.begins()
-            self._collecting = gc.isenabled()
-            gc.disable()
-        self._depth += 1
-
-    def on_end(self, event: event.Event) -> None:
-        """A kernel, or something inside of it."""
-        self._depth -= 1
-        if not self._depth:
-            if self._collecting:
-                gc.enable()
-            for each in LISTENING:
-                each.ends()
-
-
-event.register("numba:compile", Outermost())
+__all__ = [
+    "bound",
+    "cache_folder",
+    "compiled",
+    "declare_built_in",
+    "declare_callee",
+    "declare_overload",
+    "is_compiled_for",
+    "literal_unroll",
+    "take_own_way",
+]
 
 
 def _load_numba_without_blas() -> None:
@@ -72,10 +54,7 @@ def _load_numba_without_blas() -> None:
             del sys.modules["scipy.linalg"]
 
 
-CACHE = str(cache_folder())
-# Numba reads its settings again whenever a variable of its part of the environment has changed, and would from then on
-# keep compiled code beside the sources, where nothing tells old code from new.
-vars(numba.config)["CACHE_DIR"] = os.environ["NUMBA_CACHE_DIR"] = CACHE
+set_up_numba()
 
 
 class KernelCache(FunctionCache):
@@ -95,20 +74,23 @@ class KernelCache(FunctionCache):
         return sig, codegen.magic_tuple(), fingerprint(self._py_func)
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """For numba and, where it can, for itself."""
-        super().save_overload(sig, data)
-        if KERNEL:
+        """For numba and, where it can, for itself. What cannot be saved is compiled all the same."""
+        try:
+            super().save_overload(sig, data)
             library = data.library
             keep_compiled(self._py_func, data.fndesc, library._get_compiled_object(), library._final_module)
+        except OSError as error:
+            SWITCH.remark(f"{self._py_func.__qualname__} is not kept: {error}")
+        except Exception as error:
+            SWITCH.throw(error)
 
     def _load_overload(self, sig: Any, target_context: Any) -> Any:
         """As numba's own; what is here only for numba is kept as well: it would not be asked for it otherwise."""
         found = self._cache_file.load(self._index_key(sig, target_context.codegen()))
         if found is None:
             return None
-        if KERNEL:
-            (_, _, (code, bitcode)), of = found[:2]
-            keep_compiled(self._py_func, of, code, parse_bitcode(bitcode))
+        (_, _, (code, bitcode)), of = found[:2]
+        keep_compiled(self._py_func, of, code, parse_bitcode(bitcode))
         return self._impl.rebuild(target_context, found)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
@@ -118,11 +100,25 @@ class KernelCache(FunctionCache):
         start: it would make symbols of others, hashes of strings and threads of its own, known as well.
         """
         rtsys.initialize(target_context)
-        with self._guard_against_spurious_io_errors():
-            if (found := self._load_overload(sig, target_context)) is not None:
-                return found
+        try:
+            with self._guard_against_spurious_io_errors():
+                if (found := self._load_overload(sig, target_context)) is not None:
+                    return found
+        except (OSError, EOFError, UnpicklingError):  # damaged files: made anew
+            self._cache_file.flush()
         _load_numba_without_blas()
         return None
+
+
+def take_own_way() -> None:
+    """Before anything is told or compiled."""
+    take_shortcuts(CalleeCompiler)
+    pass_records_by_reference()
+
+
+def literal_unroll(function: Any, name: str) -> None:
+    """Puts what numba knows as a loop over a tuple of several types under a name that a function sees."""
+    function.__globals__[name] = numba.literal_unroll
 
 
 def compiled(function: Callable) -> Callable:
@@ -130,6 +126,20 @@ def compiled(function: Callable) -> Callable:
     found: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True, **KERNEL)(function)
     found._cache = KernelCache(function)  # as its `enable_caching` does with numba's own
     return cast(Callable, found)
+
+
+def bound(kernel: Any) -> Callable:
+    """What a kernel runs for its last arguments, without a look at types; itself where there are several."""
+    overloads = list(kernel.overloads.values())
+    return cast(Callable, overloads[0].entry_point) if len(overloads) == 1 else cast(Callable, kernel)
+
+
+def is_compiled_for(kernel: Any, arguments: tuple[Any, ...]) -> bool:
+    """Whether there is machine code for such arguments: then an error of a call is the kernel's own."""
+    try:
+        return tuple(map(numba.typeof, arguments)) in kernel.overloads
+    except Exception:
+        return False
 
 
 def declare_callee(function: Callable, forced: bool) -> None:
@@ -147,7 +157,10 @@ def declare_overload(function: Callable, implementation: Callable) -> None:
 
 
 def declare_built_in(function: Callable, _: None) -> None:
-    """Kernels may call this function, whose LLVM code views.py has."""
+    """Kernels may call this function, whose LLVM code views.py, atomics.py or bits.py has under its name."""
     name = function.__name__
-    type_callable(function)(TYPES[name])
-    lower_builtin(function, *[types.Array] * function.__code__.co_argcount)(CODE[name])
+    if name in TYPES:
+        type_callable(function)(TYPES[name])
+        lower_builtin(function, *[types.Array] * function.__code__.co_argcount)(CODE[name])
+    else:
+        declare_overload(function, {**ATOMICS, **BITS}[name])

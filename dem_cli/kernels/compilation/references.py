@@ -19,6 +19,8 @@ from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import NativeValue, register_model, typeof_impl, unbox
 from numba.np import numpy_support
 
+from dem_cli.kernels.compilation.switch import SWITCH
+
 __all__ = ["Record", "pass_records_by_reference"]
 
 _PACKAGE = __name__.partition(".")[0]
@@ -142,14 +144,15 @@ def _kind_of(field: Any, context: Any) -> types.Type | None:
     return _kinds[alike]
 
 
+@cache
 def pass_records_by_reference() -> None:
-    """Has numba take named tuples of this package for records."""
+    """Has numba take named tuples of this package for records, as long as kernels are compiled the own way."""
     by_numba = typeof_impl.dispatch(tuple)
 
     @typeof_impl.register(tuple)
     def type_of(value: tuple, context: Any) -> types.Type | None:
         names = getattr(value, "_fields", None)
-        if names is None or type(value).__module__.partition(".")[0] != _PACKAGE:
+        if names is None or type(value).__module__.partition(".")[0] != _PACKAGE or not SWITCH.own_way():
             return by_numba(value, context)
         kinds = [_kind_of(field, context) for field in value]
         if any(kind is None for kind in kinds):

@@ -18,12 +18,13 @@ from numba.core.types.functions import BaseFunction
 from numba.core.typing.templates import _OverloadFunctionTemplate
 from numba.extending import lower_builtin
 
-__all__ = ["take_shortcuts"]
+__all__ = ["leave_shortcuts", "take_shortcuts"]
 
 _compared_by_value = TargetConfig.__eq__
 _asked_of_all = BaseFunction.get_call_type
 _asked_of_llvm, _sizes = BaseContext.get_abi_sizeof, dict[str, int]()
 _call_types: dict[int, tuple[BaseFunction, dict]] = {}  # by the function's id, which it keeps as long as it is here
+_before: list[tuple[Any, str, Any]] = []  # whose, name and value of what was put into numba, to put back
 
 
 def _equal(one: TargetConfig, other: object) -> bool:
@@ -66,11 +67,13 @@ def _size_of(context: BaseContext, kind: Any) -> int:
 
 
 def take_shortcuts(compiler: type) -> None:
-    """Once, before anything is compiled; compiler: of callees.
+    """Before anything is compiled; compiler: of callees.
 
     Numba compiles what is called anew for callers of other options. Callees have options of their own, but for the
     one that puts all into the place of a call.
     """
+    if _before:
+        return
     anew = _OverloadFunctionTemplate._get_impl
 
     def implementation(template: Any, args: Any, kws: Any) -> Any:
@@ -80,10 +83,21 @@ def take_shortcuts(compiler: type) -> None:
         key = template.context, tuple(args), tuple(kws.items()), caller is not None and caller.forceinline
         return template._impl_cache.get(key) or template._build_impl(key, args, kws)
 
-    _OverloadFunctionTemplate._get_impl = implementation  # type: ignore[method-assign]
-    BaseContext.get_abi_sizeof = _size_of  # type: ignore[method-assign]
-    BaseFunction.get_call_type = _call_type  # type: ignore[method-assign,assignment]
-    TargetConfig.__eq__ = _equal  # type: ignore[method-assign,assignment]
-    TargetConfig.__hash__ = lambda one: _hash_of(type(one))  # type: ignore[method-assign]
-    base._has_loc = cache(base._has_loc)
+    _put(_OverloadFunctionTemplate, "_get_impl", implementation)
+    _put(BaseContext, "get_abi_sizeof", _size_of)
+    _put(BaseFunction, "get_call_type", _call_type)
+    _put(TargetConfig, "__eq__", _equal)
+    _put(TargetConfig, "__hash__", lambda one: _hash_of(type(one)))
+    _put(base, "_has_loc", cache(base._has_loc))
     lower_builtin("__array__", types.Array)(_itself)
+
+
+def _put(owner: Any, name: str, shortcut: Any) -> None:
+    _before.append((owner, name, getattr(owner, name)))
+    setattr(owner, name, shortcut)
+
+
+def leave_shortcuts() -> None:
+    """Numba as it was before `take_shortcuts`."""
+    while _before:
+        setattr(*_before.pop())

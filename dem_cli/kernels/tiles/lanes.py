@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.kernels.jit import overload
+from dem_cli.kernels.jit import built_in, overload
 
 LANES = 16
 ROW = np.uint64(LANES)
@@ -83,13 +83,10 @@ def _take_frame(array, start, like):
     )
 
 
+@built_in
 def lowest_bit(bits):
     """Place of the lowest bit that is set in a whole number; there is one."""
-    return (bits & -bits).bit_length() - 1
-
-
-@overload(lowest_bit)
-def _lowest_bit(bits):
-    from dem_cli.kernels.compilation.bits import lowest
-
-    return lambda bits: lowest(bits)
+    place = 0
+    while not (bits >> place) & 1:
+        place += 1
+    return place

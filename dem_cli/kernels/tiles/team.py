@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.kernels.jit import inline, overload
+from dem_cli.kernels.jit import built_in, inline
 
 MEMBERS, TICKET, ARRIVED = 0, 8, 16  # of `team`, each in a cache line of its own
 N_TEAM = 24
 SPINS = 2000  # about 5 µs
 
 
+@built_in
 def add_at_once(array, index, amount):
     """array[index] += amount, whoever else adds to it; returns what was there before."""
     before = array[index]
@@ -22,34 +23,15 @@ def add_at_once(array, index, amount):
     return before
 
 
-@overload(add_at_once)
-def _add_at_once(array, index, amount):
-    from dem_cli.kernels.compilation.atomics import add
-
-    return lambda array, index, amount: add(array, index, amount)
-
-
+@built_in
 def now_at(array, index):
     """array[index] as all see it; what others wrote before they wrote that is seen as well."""
     return array[index]
 
 
-@overload(now_at)
-def _now_at(array, index):
-    from dem_cli.kernels.compilation.atomics import seen
-
-    return lambda array, index: seen(array, index)
-
-
+@built_in
 def give_way():
     """Lets others have this core."""
-
-
-@overload(give_way)
-def _give_way():
-    from dem_cli.kernels.compilation.atomics import give_core_away
-
-    return lambda: give_core_away()
 
 
 def new_team(members: int = 1) -> np.ndarray:
