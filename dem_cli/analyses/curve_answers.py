@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.code_checks import local_mechanism, n2
 from dem_cli.code_checks.oscillator import participation
 from dem_cli.engine.job import Job
@@ -101,7 +102,7 @@ class CurveCheck:
         sim, d = self.sim, self.sim.model.dimension
         moved = (after.bodies.positions - before.bodies.positions)[sim.free]
         along = sim.loads.live[sim.free, :d].sum(axis=0)
-        return np.asarray(moved @ (along / np.sqrt((along**2).sum())))
+        return np.asarray(product(moved, along / np.sqrt((along**2).sum())))
 
     def _corner(self) -> float:
         table = self.table

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.arithmetic.products import norm
 from dem_cli.dynamics.frequencies import Modes, highest_frequency, modes, system
 from dem_cli.engine import measures
 from dem_cli.engine.audit import unbending
@@ -141,7 +142,7 @@ def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
     turns = np.linalg.norm(shape[:, rotations], axis=1)
     reach = np.sqrt((shape[:, :d] ** 2).sum(axis=1)) + turns * sim.shape.radii
     reach = reach + np.abs(shape[:, rotations.stop :]).sum(axis=1)
-    size = float(np.linalg.norm(np.ptp(model.centroids[free], axis=0) + 2.0 * sim.shape.radii[free].mean()))
+    size = float(norm(np.ptp(model.centroids[free], axis=0) + 2.0 * sim.shape.radii[free].mean()))
     turn = float(turns.max())
     amplitude = min(settings.visible * size / reach.max(), settings.largest_turn / turn if turn > 0.0 else math.inf)
     rest = measures.frame(sim, "mode")

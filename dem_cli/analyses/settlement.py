@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.job import Job, Outcome
@@ -84,7 +85,7 @@ class SupportMovement:
             motion[chosen] += share * np.array([*table.displacement, *table.rotation])
             if len(chosen) > 1 and any(table.rotation):
                 masses, centroids = self.model.masses[chosen], self.model.centroids[chosen]
-                arms = centroids - masses @ centroids / masses.sum()
+                arms = centroids - product(masses, centroids) / masses.sum()
                 turn = share * np.array(table.rotation)
                 motion[chosen, : self.model.dimension] += turned_as_one(arms, turn) - arms
         return motion

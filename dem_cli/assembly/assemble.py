@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.assembly import selection_checks
 from dem_cli.assembly.applied_loads import applied_loads
 from dem_cli.assembly.cracks import cracked
@@ -238,8 +239,8 @@ def _with_loads(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Model
         applied = [load._replace(forces=np.outer(load.weights, _direction(case))) for load in heavy]
     elif pattern == "tilt":
         turn = _quarter_turn(case, dead)
-        live[:, :d] = weight[:, :d] @ turn.T
-        applied = [load._replace(forces=load.forces @ turn.T) for load in dead]
+        live[:, :d] = product(weight[:, :d], turn.T)
+        applied = [load._replace(forces=product(load.forces, turn.T)) for load in dead]
     elif pattern == "live":
         applied = [load for load in loads if not load.dead]
     live += _resultants(model, applied)
@@ -298,7 +299,7 @@ def _quarter_turn(case: Case, dead: Sequence[AppliedLoad]) -> np.ndarray:
         raise CaseError([CaseProblem(("analysis", "direction"), f"a table tilts {way[case.dimension]}")])
     towards /= length
     for load in dead:
-        along = load.forces - np.outer(load.forces @ towards, towards) - np.outer(load.forces @ up, up)
+        along = load.forces - np.outer(product(load.forces, towards), towards) - np.outer(product(load.forces, up), up)
         if np.abs(along).max() > ALONG_AXIS * np.abs(load.forces).max():
             given = case.load[int(load.path[1])].force if load.path[0] == "load" else None
             message = "it has a part along the axis about which the table tilts"

@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.arithmetic.products import norm, product
+from dem_cli.arithmetic.small_matrices import diagonalised
 from dem_cli.case.base import Crack
 from dem_cli.geometry import cuts, halfspaces, polygon
 from dem_cli.geometry.polyhedron import Polyhedron, newell
@@ -33,7 +35,7 @@ def cracked(blocks: Sequence[Block], crack: Crack | None) -> list[Block]:
 def _pieces(block: Block, crack: Crack) -> list[Block]:
     corners = np.concatenate([corners_of(part) for part in block.parts])
     normal = along(corners)
-    heights = corners @ normal
+    heights = product(corners, normal)
     low, high = float(heights.min()), float(heights.max())
     found, rest = [], list(block.parts)
     for share in crack.at:
@@ -55,14 +57,14 @@ def _pieces(block: Block, crack: Crack) -> list[Block]:
 def along(corners: np.ndarray) -> np.ndarray:
     """Unit vector along the length of a block, by its corners (n, d); of several as long, that nearest to x."""
     arms = corners - corners.mean(axis=0)
-    values, vectors = np.linalg.eigh(arms.T @ arms)
+    values, vectors = diagonalised(product(arms.T, arms))
     longest = vectors[:, values >= (1.0 - ALIKE) * values[-1]]
     for axis in np.eye(len(values)):
-        direction = longest @ (longest.T @ axis)
-        if direction @ axis > ALIKE:
+        direction = product(longest, product(longest.T, axis))
+        if product(direction, axis) > ALIKE:
             break
     direction[np.abs(direction) < ALIKE] = 0.0  # upright to the last bit where it is but for round-off
-    return direction / np.linalg.norm(direction)
+    return direction / norm(direction)
 
 
 def _cut(parts: Sequence[Any], normal: np.ndarray, height: float) -> tuple[list[Any], list[Any]]:
@@ -96,4 +98,4 @@ def _size(part: Any) -> float:
     if not isinstance(part, Polyhedron):
         return polygon.area(part)
     loops = [part.vertices[face] for face in part.faces]
-    return abs(sum(float(loop[0] @ newell(loop)) for loop in loops))
+    return abs(sum(float(product(loop[0], newell(loop))) for loop in loops))

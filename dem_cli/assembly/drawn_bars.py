@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseProblem, KeyPath
 from dem_cli.geometry.parts import shapes_of
@@ -63,7 +64,7 @@ def _in_blocks(model: Model, start: np.ndarray, along: np.ndarray, length: float
     vertices, topology = undeformed(model), model.topology
     normals = shapes_of(vertices).normals(vertices, topology)
     ahead = ((vertices[topology.face_corners[topology.face_starts[:-1]]] - start) * normals).sum(axis=1)
-    towards = normals @ along
+    towards = product(normals, along)
     size = model.parts.sizes.max()
     parallel = np.abs(towards) < TOUCHES
     with np.errstate(divide="ignore", invalid="ignore"):

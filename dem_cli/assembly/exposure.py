@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.contact.detect import find_joints
 from dem_cli.contact.gaps import STEEPEST, joined, joint_reach
 from dem_cli.contact.geometry import geometry_of
@@ -61,7 +62,7 @@ class Surfaces:
         """Faces of which some corner lies in each of some half-spaces: all that have a part there, (n_faces,) bool."""
         found, first = np.ones(self.topology.n_faces, bool), self.topology.face_starts[:-1]
         for normal, offset in zip(normals, offsets, strict=True):
-            found &= np.minimum.reduceat((self.corners @ normal)[self.topology.face_corners], first) <= offset
+            found &= np.minimum.reduceat(product(self.corners, normal)[self.topology.face_corners], first) <= offset
         return found
 
     def open_above(self, pieces: Sequence[SurfacePiece], ceiling: float, roofs: np.ndarray) -> list[SurfacePiece]:

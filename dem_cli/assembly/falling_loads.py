@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import norm, product
 from dem_cli.assembly.exposure import SurfacePiece, Surfaces
 from dem_cli.assembly.point_forces import LOOKS_UP, POINT, AppliedLoad, acts_on_nothing
 from dem_cli.case.wording import show
@@ -39,7 +40,7 @@ def falling_load(model: Model, surfaces: Surfaces | None, path: KeyPath, table: 
         where = "block" if table.selected is None else table.said
         raise acts_on_nothing(path, key, f"there is no {where} under {show(table.at or table.line)}")
     if table.spread:
-        depth = float((ends.mean(axis=0)[-1] - found.points[:, -1]) @ found.areas / found.areas.sum())
+        depth = float(product(ends.mean(axis=0)[-1] - found.points[:, -1], found.areas) / found.areas.sum())
         found = _under(surfaces, blocks, top, ends, (table.spread * max(depth, 0.0), small))
     force = np.array(table.force if table.line is None else table.force_per_length)
     if table.line is not None:
@@ -48,7 +49,7 @@ def falling_load(model: Model, surfaces: Surfaces | None, path: KeyPath, table: 
         if over < 1.0 - BESIDE:
             message = f"{(1.0 - over) * length:.3g} m of it lie over no block; shorten it, or give spread"
             raise acts_on_nothing(path, key, message)
-        force = force * float(np.linalg.norm(ends[1] - ends[0]))
+        force = force * float(norm(ends[1] - ends[0]))
     forces = np.outer(found.areas / found.areas.sum(), force)
     return AppliedLoad(path, table.kind == "dead", found.blocks, found.points, forces, np.zeros(len(forces)))
 
@@ -95,7 +96,7 @@ def _strip(ends: np.ndarray, small: float, wider: float = 0.0) -> tuple[np.ndarr
     normals, offsets = [], []
     for k, axis in enumerate(axes):
         reach = max(wider, small if length == 0.0 or k else 0.0)
-        heights = flat @ axis
+        heights = product(flat, axis)
         normals += [np.append(axis, 0.0), np.append(-axis, 0.0)]
         offsets += [heights.max() + reach, reach - heights.min()]
     return np.array(normals), np.array(offsets)

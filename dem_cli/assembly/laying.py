@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.contact.detect import find_joints
 from dem_cli.geometry import polygon
 from dem_cli.geometry.clearance import clearances
@@ -52,7 +53,7 @@ def order_of(model: Model, corners: np.ndarray, pairs: np.ndarray) -> Order:
     high = np.maximum.reduceat(corners[:, 1], starts[:-1])
     above |= np.isinf(heights) & (low[later] >= high[earlier] - small)  # blocks that touch at corners
     either = above | np.roll(above, len(pairs))
-    widths = clearances(later, earlier, corners @ MIRROR, starts, small)
+    widths = clearances(later, earlier, product(corners, MIRROR), starts, small)
     beside = ~either & np.isfinite(widths) & (widths >= -small)
     both = np.stack([later, earlier], axis=1)
     return Order(both[beside], both[above])
@@ -68,7 +69,7 @@ def lay(model: Model, corners: np.ndarray, order: Order, movable: np.ndarray) ->
     Raises Interlocked.
     """
     moves = np.zeros((model.n_blocks, 2))
-    moves[:, 0] = np.maximum(_moves(model, corners @ MIRROR, order.beside, movable, 0.0), 0.0)
+    moves[:, 0] = np.maximum(_moves(model, product(corners, MIRROR), order.beside, movable, 0.0), 0.0)
     pushed = corners + moves[model.vertex_blocks]
     moves[:, 1] = _moves(model, pushed, order.above, movable, -np.inf)
     return moves

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.errors import CaseError, CaseProblem, KeyPath
 
 LOOKS_UP = 1e-9  # vertical component of the normal of a face from which on it does
@@ -33,7 +34,7 @@ class AppliedLoad(NamedTuple):
     def centre(self) -> np.ndarray:
         """Mean of the points, weighted by their forces: of a plane face that of its line of action [m], (d,)."""
         sizes = np.linalg.norm(self.forces, axis=1)
-        return self.points.mean(axis=0) if sizes.sum() == 0.0 else sizes @ self.points / sizes.sum()
+        return self.points.mean(axis=0) if sizes.sum() == 0.0 else product(sizes, self.points) / sizes.sum()
 
 
 def acts_on_nothing(path: KeyPath, key: str, message: str) -> CaseError:

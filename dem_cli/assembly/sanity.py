@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
 from dem_cli.assembly.assemble import joint_table
 from dem_cli.case.plausibility import SHAKES, BlockSizes, size_doubts
 from dem_cli.case.wording import show
@@ -62,7 +63,7 @@ def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[Ap
 def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
     free = np.flatnonzero(~model.fixed).tolist()
     corners = undeformed(model)[np.isin(model.vertex_blocks, free)]
-    sizes = model.shapes.volumes[free] ** (1.0 / model.dimension)
+    sizes = functions.power(model.shapes.volumes[free], 1.0 / model.dimension)
     return BlockSizes(
         [model.block_ids[i] for i in free],
         [blocks[i].path for i in free],

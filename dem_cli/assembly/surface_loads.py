@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
+from dem_cli.arithmetic.products import product
 from dem_cli.assembly.exposure import SurfacePiece, Surfaces
 from dem_cli.assembly.point_forces import LOOKS_UP, POINT, AppliedLoad, acts_on_nothing
 from dem_cli.case.wording import show
@@ -79,7 +81,7 @@ def _stress(case: Case, table: Pressure) -> tuple[SoilStress, str]:
         return SoilStress(0.0, table.fluid.density * case.gravity, table.fluid.level), "fluid"
     if table.earth is not None:
         earth = table.earth
-        friction = float(np.tan(np.radians(earth.wall_friction_deg)))
+        friction = float(functions.tan(np.radians(earth.wall_friction_deg)))
         per_depth = earth.density * case.gravity
         return SoilStress(earth.surcharge, per_depth, earth.level, earth.sideways, False, friction), "earth"
     return SoilStress(table.uniform or 0.0, 0.0, None), "levels"
@@ -123,7 +125,7 @@ def _extent(model: Model, blocks: np.ndarray, table: Fill) -> tuple[tuple[np.nda
         from scipy.spatial import ConvexHull
 
         planes = ConvexHull(corners).equations
-        normals, offsets = planes[:, :-1] @ upright, -planes[:, -1]
+        normals, offsets = product(planes[:, :-1], upright), -planes[:, -1]
         span = float(np.linalg.norm(corners - corners.mean(axis=0), axis=1).max())  # however they are turned in plan
     return (normals, offsets), POINT * span
 

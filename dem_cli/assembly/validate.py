@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
 from dem_cli.assembly.assemble import joint_table
 from dem_cli.assembly.place_notes import NOTES
 from dem_cli.case.wording import show, unknown_name
@@ -230,7 +231,7 @@ def _kinks(model: Model) -> list[str]:
 
 def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     """Parts without area or not convex."""
-    least = polygon.ROUND_OFF * model.parts.sizes**model.dimension
+    least = polygon.ROUND_OFF * functions.power(model.parts.sizes, model.dimension)
     flat = model.parts.volumes <= least
     shapes = shapes_of(model.vertices)
     bent = ~shapes.are_convex(model.vertices, model.part_starts, model.topology, model.parts.sizes) & ~flat

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.contact.detect import find_joints
 from dem_cli.contact.geometry import geometry_of
 from dem_cli.contact.joints import DrawnFaces, Faces
@@ -27,7 +28,7 @@ class JointEnds(NamedTuple):
 
     def middles(self) -> tuple[np.ndarray, np.ndarray]:
         """Middle of the joint on both blocks, from their centroids [m], (d,) each."""
-        return self.shares @ self.on_first, self.shares @ self.on_second
+        return product(self.shares, self.on_first), product(self.shares, self.on_second)
 
 
 class StartJoints:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.contact.area_rules import inner_points
 from dem_cli.contact.joints import Faces, JointProperties, points_of
 from dem_cli.contact.keys import face_names, same_rows
@@ -201,5 +202,5 @@ def centroid(outline: np.ndarray) -> np.ndarray:
     near = outline - outline[0]
     doubled = np.cross(near[1:-1], near[2:])
     whole = doubled.sum(axis=0)
-    parts = doubled @ whole / (whole @ whole)
-    return outline[0] + parts @ (near[1:-1] + near[2:]) / 3.0
+    parts = product(doubled, whole) / product(whole, whole)
+    return outline[0] + product(parts, near[1:-1] + near[2:]) / 3.0

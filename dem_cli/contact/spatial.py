@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.contact.area_rules import InnerPoints, inner_points
 from dem_cli.contact.caps import apothems, has_cap, highest, odd_or_uneven, steepest
 from dem_cli.contact.joints import DrawnFaces, Faces, JointProperties, joints_of
@@ -71,7 +72,7 @@ def left_out(model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarra
     for count in np.unique(np.diff(first)):
         parts = np.flatnonzero(np.diff(first) == count)
         own = normals[first[parts, None] + np.arange(count)]
-        near = own @ own.swapaxes(1, 2) > 1.0 - 0.5 * FLAT**2
+        near = product(own, own.swapaxes(1, 2)) > 1.0 - 0.5 * FLAT**2
         kinked[parts] = near.sum(axis=(1, 2)) > count
     if not kinked.any():
         return np.zeros((0, 2), np.int64), np.zeros(0)
@@ -310,4 +311,4 @@ def profile_fault(
 
 def _thickness(model: Model, corners: np.ndarray, part: int, normal: np.ndarray) -> float:
     """How far a part reaches along a normal [m]."""
-    return float(np.ptp(corners[model.part_starts[part] : model.part_starts[part + 1]] @ normal))
+    return float(np.ptp(product(corners[model.part_starts[part] : model.part_starts[part + 1]], normal)))

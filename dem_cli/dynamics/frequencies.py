@@ -17,6 +17,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.functions import agreed
+from dem_cli.arithmetic.products import product
+from dem_cli.arithmetic.small_matrices import diagonalised
 from dem_cli.contact.compatibility import compatibility, held_motions
 from dem_cli.dynamics.geometric_stiffness import geometric_stiffness
 from dem_cli.engine.dynamic_settings import FrequencySettings
@@ -168,13 +171,13 @@ def _uncoupled(model: Model, bodies: Bodies | None) -> tuple[np.ndarray, np.ndar
         return model.inertias, principal_directions(model, None if bodies is None else bodies.orientations)
     matrix, r = mass_matrices(model), model.inertias.shape[1]
     if r == 3:
-        matrix[:, :r] = matrices(bodies.orientations) @ matrix[:, :r]
-        matrix[:, :, :r] = matrix[:, :, :r] @ matrices(bodies.orientations).swapaxes(1, 2)
+        matrix[:, :r] = product(matrices(bodies.orientations), matrix[:, :r])
+        matrix[:, :, :r] = product(matrix[:, :, :r], matrices(bodies.orientations).swapaxes(1, 2))
     free = ~held_motions(model, True)[:, model.dimension :]
     found, axes = np.diagonal(matrix, axis1=1, axis2=2).copy(), np.tile(np.eye(matrix.shape[1]), (len(matrix), 1, 1))
     for block, kept in enumerate(free):  # those that are held stay what and where they are
         among = np.ix_(kept, kept)
-        found[block, kept], axes[block][among] = np.linalg.eigh(matrix[block][among])
+        found[block, kept], axes[block][among] = diagonalised(matrix[block][among])
     return found, axes
 
 
@@ -202,7 +205,7 @@ def principal_directions(model: Model, orientations: np.ndarray | None = None) -
     if not len(model.principal_axes):
         return np.ones((model.n_blocks, 1, 1))
     own = matrices(model.principal_axes)
-    return own if orientations is None else matrices(orientations) @ own
+    return own if orientations is None else product(matrices(orientations), own)
 
 
 def _per_mass(masses: np.ndarray, axes: np.ndarray) -> csr_array:
@@ -230,7 +233,7 @@ def _turning(axes: np.ndarray, n_dof: int) -> csr_array:
 def _with_rotations(values: np.ndarray, axes: np.ndarray) -> np.ndarray:
     """Generalised vectors (..., n, n_dof) with their last r components turned, each block's by its own matrix."""
     r = axes.shape[1]
-    turned = (axes @ values[..., -r:, None])[..., 0]
+    turned = product(axes, values[..., -r:, None])[..., 0]
     return np.concatenate([values[..., :-r], turned], axis=-1)
 
 
@@ -276,14 +279,14 @@ def _largest(found: System) -> tuple[float, np.ndarray | None]:
     matrix = found.matrix
     if n <= settings.dense:
         values, vectors = np.linalg.eigh(matrix.toarray())
-        return float(np.sqrt(values[-1])), vectors[:, -1]
+        return agreed(np.sqrt(values[-1])), vectors[:, -1]
     from scipy.sparse.linalg import ArpackError, eigsh
 
     try:
         values, vectors = eigsh(matrix, k=1, which="LA", v0=start_vector(n), tol=settings.accurate)
     except ArpackError:
         return float(np.sqrt(_gershgorin(matrix).max())), None
-    return float(np.sqrt(values[0])), vectors[:, 0]
+    return agreed(np.sqrt(values[0])), vectors[:, 0]
 
 
 def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:

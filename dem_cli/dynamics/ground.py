@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.kernels.records import Ground
 from dem_cli.model.model import Model
 from dem_cli.motion.record import MOTION_QUANTITIES
@@ -77,7 +78,9 @@ class GroundMotion:
         """Acceleration of the base along its first motion [m/s²]."""
         if not self.base:
             return 0.0
-        return float(self._sum(self.base, "acceleration", np.array([time]))[0] @ np.array(self.base[0].direction))
+        return float(
+            product(self._sum(self.base, "acceleration", np.array([time]))[0], np.array(self.base[0].direction))
+        )
 
     def stretch(self, start: float, n_steps: int, dt: float) -> Ground:
         """The ground over n_steps steps from the time `start` [s]: the frame is accelerated by as much as it gains

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.arithmetic.products import norm, product
 from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine import measures
 from dem_cli.engine.placement import moves
@@ -78,4 +79,4 @@ def _pivot(sim: Simulation, chosen: np.ndarray, turn: np.ndarray) -> np.ndarray:
         corners = sim.bodies.corners[mine]
         points = corners[corners[:, -1] <= corners[:, -1].min() + 1e-9]
     towards = swept(turn, np.eye(sim.model.dimension)[-1])  # where what is above goes
-    return points[(points @ (towards / np.linalg.norm(towards))).argmax()]
+    return points[product(points, towards / norm(towards)).argmax()]

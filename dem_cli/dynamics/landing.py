@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
+from dem_cli.arithmetic.small_matrices import diagonalised
 from dem_cli.dynamics.frequencies import principal_directions
 from dem_cli.geometry.parts import shapes_of
 
@@ -31,7 +33,7 @@ def landing(sim: Simulation) -> tuple[float, int]:
     faces = np.flatnonzero(np.isin(of_face, loose) & ~model.inner_faces)
     if not len(faces):
         return 0.0, -1
-    found = np.linalg.eigvalsh(_stiffness(model, sim.properties, faces))[:, -1]
+    found = diagonalised(_stiffness(model, sim.properties, faces))[0][:, -1]
     fastest = int(found.argmax())
     return float(np.sqrt(found[fastest])), int(of_face[faces[fastest]])
 
@@ -52,9 +54,9 @@ def _stiffness(model: Model, properties: JointProperties, faces: np.ndarray) -> 
     normals = np.repeat(shapes_of(model.vertices).normals(model.vertices, topology)[faces], counts, axis=0)
     springs = ks[:, None, None] * np.eye(d) + ((kn - ks)[:, None] * normals)[:, :, None] * normals[:, None, :]
     roots = np.sqrt(np.column_stack([np.repeat(model.masses[:, None], d, axis=1), model.inertias]))[owners]
-    turns = _by_rotations(model.vertices[corners]) @ principal_directions(model)[owners]
+    turns = product(_by_rotations(model.vertices[corners]), principal_directions(model)[owners])
     motion = np.concatenate([np.broadcast_to(np.eye(d), springs.shape), turns], axis=2) / roots[:, None, :]
-    return np.add.reduceat(motion.swapaxes(1, 2) @ springs @ motion, starts)
+    return np.add.reduceat(product(product(motion.swapaxes(1, 2), springs), motion), starts)
 
 
 def _by_rotations(arms: np.ndarray) -> np.ndarray:

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
+from dem_cli.arithmetic import functions
+from dem_cli.arithmetic.products import product
 from dem_cli.dynamics.frequencies import principal_directions
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import CaseError, CaseProblem
@@ -84,11 +86,11 @@ def _in_space(foot: np.ndarray) -> Rocking:
     along = sides / np.linalg.norm(sides, axis=1)[:, None]
     across = outline - (outline * along).sum(axis=1)[:, None] * along
     outwards = np.column_stack([along[:, 1], -along[:, 0]])
-    leaning = np.arctan2((across[:, :2] * outwards).sum(axis=1), -across[:, 2])
+    leaning = functions.arctan2((across[:, :2] * outwards).sum(axis=1), -across[:, 2])
     first = int(np.flatnonzero(leaning <= leaning.min() + EQUAL)[0])
     axis = along[first]
-    others = outline - (outline @ axis)[:, None] * axis
-    last = others[(others[:, :2] @ outwards[first]).argmin()]
+    others = outline - product(outline, axis)[:, None] * axis
+    last = others[product(others[:, :2], outwards[first]).argmin()]
     return Rocking(np.array([across[first], last]), axis)
 
 
@@ -101,9 +103,9 @@ def housner(model: Model, reference: RockingBlock) -> float:
     bounce: (I + m r·r') / (I + m r'²), of moments about the new end (Housner 1963; 1 − 1.5 sin²α for a rectangle).
     """
     (old, new), axis = reference.rocks()
-    mass, along = model.masses[reference.block], axis @ principal_directions(model)[reference.block]
+    mass, along = model.masses[reference.block], product(axis, principal_directions(model)[reference.block])
     inertia = (along**2 * model.inertias[reference.block]).sum()
-    return float((inertia + mass * old @ new) / (inertia + mass * new @ new))
+    return float((inertia + product(mass * old, new)) / (inertia + product(mass * new, new)))
 
 
 def fraction_of(
@@ -127,10 +129,10 @@ def fraction_of(
         raise CaseError([CaseProblem(("damping", "restitution"), message)])
 
     def error(logarithm: float) -> float:
-        return rocked(case, model, reference, float(np.exp(logarithm)), settings) - wanted
+        return rocked(case, model, reference, float(functions.exp(logarithm)), settings) - wanted
 
-    least, most = np.log(restitution.least), np.log(restitution.most)
-    found = float(np.exp(brentq(error, least, most, xtol=restitution.accurate, rtol=1e-6)))
+    least, most = functions.log(restitution.least), functions.log(restitution.most)
+    found = float(functions.exp(brentq(error, least, most, xtol=restitution.accurate, rtol=1e-6)))
     return found, f"restitution {wanted:g} of block '{name}', {found:.3g} of critical"
 
 
@@ -154,7 +156,7 @@ def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float, s
     dt = time_step(sim, case.analysis.margin).step
     sim.begin(dt)
     ends, axis = reference.rocks()
-    slender = np.arctan2(np.linalg.norm(ends[:, :-1], axis=1).min(), np.abs(ends[:, -1]).max())
+    slender = functions.arctan2(np.linalg.norm(ends[:, :-1], axis=1).min(), np.abs(ends[:, -1]).max())
     angle = float(restitution.tilt * slender)
     tilt(sim, np.array([1]), angle * axis)
     sim.start_moving()
@@ -167,7 +169,7 @@ def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float, s
     while sim.time < longest:
         sim.shake(ground.stretch(sim.time, n, dt), n, watch)
         place, speed = watch.samples[:, 0, 0], watch.samples[:, 0, 1]
-        turn, spin = place[:, pair.rotations] @ axis, speed[:, pair.rotations] @ axis
+        turn, spin = product(place[:, pair.rotations], axis), product(speed[:, pair.rotations], axis)
         beyond = turn < -restitution.landed * angle
         highest = max(highest, float((place[beyond, pair.dimension - 1] - rest).max(initial=0.0)))
         if (beyond & (spin > 0.0)).any():

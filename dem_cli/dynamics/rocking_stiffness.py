@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.small_matrices import diagonalised
+from dem_cli.arithmetic.sparse_systems import solved_symmetric
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.dynamics.frequencies import System, highest_of, springs_of
 from dem_cli.engine.properties import joint_properties
@@ -101,7 +103,7 @@ def turn_sideways(model: Model, joints: Joints, settings: Settings = DEFAULT) ->
         moved = found.motion(_solved(found, found.reduced(sideways).ravel()).reshape(dead.shape))
         turns[:, :, axis] = moved[:, model.rotations]
     # Of all horizontal directions that which turns a block most: the largest singular value.
-    most = np.sqrt(np.linalg.eigvalsh(np.einsum("brk,brl->bkl", turns, turns))[:, -1])
+    most = np.sqrt(diagonalised(np.einsum("brk,brl->bkl", turns, turns))[0][:, -1])
     return float(most[most < settings.rocking.mechanism].max(initial=0.0))
 
 
@@ -109,12 +111,9 @@ def _solved(found: System, forces: np.ndarray) -> np.ndarray:
     """L u under forces L⁻ᵀ f (frequencies.System); what nothing holds moves very far."""
     matrix = found.matrix
     shift = found.settings.zero * float(matrix.diagonal().max(initial=0.0)) or 1.0
-    if len(forces) <= found.settings.dense:
-        return np.linalg.solve(matrix.toarray() + shift * np.eye(len(forces)), forces)
     from scipy.sparse import eye_array
-    from scipy.sparse.linalg import spsolve
 
-    return spsolve((matrix + shift * eye_array(len(forces))).tocsc(), forces)
+    return solved_symmetric(matrix + shift * eye_array(len(forces)), forces)
 
 
 def _joints(case: Case, model: Model, ratio: float) -> tuple[Joints, np.ndarray]:

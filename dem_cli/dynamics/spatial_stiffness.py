@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.contact.detect import block_shape, world_corners
 from dem_cli.contact.geometry import motion_of
 from dem_cli.contact.joints import JointGeometry
@@ -63,7 +64,7 @@ def attachment(model: Model, joints: Joints, geometry: JointGeometry, contacts: 
         of_b = chosen[blocks[here, 1]]
         spin, shift, turn = moved.by(chosen, here)
         arm = np.where(of_b[:, None], arms[here, 1], arms[here, 0])
-        spin += turn @ cross_matrices(arm)  # turned about its centroid a block moves as well: not its spin
+        spin += product(turn, cross_matrices(arm))  # turned about its centroid a block moves as well: not its spin
         own = np.where(of_b[:, None, None], 0.0, 1.0) * np.eye(3)
         sign = np.where(of_b[:, None, None], 1.0, -1.0)
         found.spins[here], found.follows[here] = own + sign * spin, own + sign * shift
@@ -114,7 +115,7 @@ class _Moved:
 
 def _spin_between(after: tuple[np.ndarray, np.ndarray], before: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
     """Small rotation vectors from frames before to frames after [rad], (n, 3)."""
-    turn = after[0].swapaxes(1, 2) @ before[0]
+    turn = product(after[0].swapaxes(1, 2), before[0])
     return 0.5 * np.stack([turn[:, k, j] - turn[:, j, k] for j, k in ((1, 2), (2, 0), (0, 1))], axis=1)
 
 
@@ -132,10 +133,10 @@ def second_derivatives(forces: np.ndarray, arms: np.ndarray, attached: Attachmen
     for side, spin, way in ((0, unit - spins, follows), (1, spins, unit - follows)):
         sign, arm, rotations = 2.0 * side - 1.0, arms[:, side], slice(6 * side + 3, 6 * side + 6)
         motion[:, :, rotations] = -sign * cross_matrices(arm)
-        turned[:, :, rotations] = -0.5 * (force @ spin + way.swapaxes(1, 2) @ force)
+        turned[:, :, rotations] = -0.5 * (product(force, spin) + product(way.swapaxes(1, 2), force))
         both = np.einsum("pi,pj->pij", forces, arm)
         found[:, rotations, rotations] = sign * (0.5 * (both + both.swapaxes(1, 2)) - _scaled_unit(both))
-    mixed = motion.swapaxes(1, 2) @ turned
+    mixed = product(motion.swapaxes(1, 2), turned)
     return found + mixed + mixed.swapaxes(1, 2)
 
 

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.model.scales import levels, origin_of, smallest_edge, stiffness_scale, structures
 
 if TYPE_CHECKING:
@@ -136,7 +137,7 @@ def _rotational(sim: Simulation, axis: np.ndarray | None) -> tuple[np.ndarray, n
 def _along(kn: np.ndarray, arms: np.ndarray, starts: np.ndarray, axis: np.ndarray | None) -> np.ndarray:
     """Σ kn (arm along the axis)² of each joint in space [N m], which does not help about that axis; None: the most."""
     if axis is not None:
-        return np.add.reduceat(kn * (arms @ axis) ** 2, starts)
+        return np.add.reduceat(kn * product(arms, axis) ** 2, starts)
     xx, yy, xy = (np.add.reduceat(kn * arms[:, i] * arms[:, j], starts) for i, j in ((0, 0), (1, 1), (0, 1)))
     return 0.5 * (xx + yy) + np.hypot(0.5 * (xx - yy), xy)
 

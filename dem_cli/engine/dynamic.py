@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
 from dem_cli.contact.compatibility import held_motions
 from dem_cli.contact.joints import JointProperties
 from dem_cli.engine.loops import compiled_shake
@@ -181,8 +182,8 @@ class DynamicSimulation(Simulation):
         if not len(self.damping.elements):
             return np.zeros(0)
         share, rate = self.damping.elements.T
-        gains = -share * np.expm1(-rate * self.dt) / rate
-        return np.ascontiguousarray(np.column_stack([np.exp(-rate * self.dt), gains]))
+        gains = -share * functions.expm1(-rate * self.dt) / rate
+        return np.ascontiguousarray(np.column_stack([functions.exp(-rate * self.dt), gains]))
 
     # -- stepping ----------------------------------------------------------------------------------
 

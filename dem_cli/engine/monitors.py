@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import norm, product
 from dem_cli.engine.measures import reactions
 from dem_cli.geometry.rotation import angles_of, beside, moments, rotation_vectors, swept, tangents_of, turning
 from dem_cli.kernels.records import NO_LINKS
@@ -119,7 +120,7 @@ class PointMonitor(NamedTuple):
         """Of vectors of all points (n, n_points, ...) over its own, (n, ...)."""
         if len(self.points) == 1:
             return vectors[:, self.points[0]]
-        return np.tensordot(vectors[:, self.points], self.weights, (1, 0))
+        return np.einsum("np...,p->n...", vectors[:, self.points], self.weights)
 
 
 class ReactionMonitor(NamedTuple):
@@ -136,11 +137,11 @@ class ReactionMonitor(NamedTuple):
         forces, vector = given[:, : model.dimension], given[:, : model.dimension].sum(axis=0)
         if self.quantity == "reaction_moment":
             masses, places = model.masses[self.blocks], sim.bodies.positions[self.blocks]
-            arms = places - masses @ places / masses.sum()
+            arms = places - product(masses, places) / masses.sum()
             vector = (given[:, model.rotations] + moments(arms, forces)).sum(axis=0)
         if self.component is not None:
             return float(vector["xyz".index(self.component)])
-        return float(vector[0]) if len(vector) == 1 else float(np.linalg.norm(vector))
+        return float(vector[0]) if len(vector) == 1 else float(norm(vector))
 
 
 class Monitors:
@@ -219,7 +220,7 @@ class Monitors:
             if self._at_joints is not None:
                 self._at_joints.fill(out, motion)
             for column, (rows, what, weights) in self._of_links:
-                out[:, column] = links[:, list(rows), what] @ np.array(weights)
+                out[:, column] = product(links[:, list(rows), what], np.array(weights))
         return out
 
     def _blocks(self) -> list[tuple[int, ...]]:

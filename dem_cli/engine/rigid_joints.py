@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.arithmetic.sparse_systems import solved_symmetric
 from dem_cli.contact.compatibility import compatibility
 from dem_cli.engine.placement import moves
 
@@ -74,7 +75,6 @@ def take_back(sim: Simulation, points: np.ndarray) -> None:
 def _motion_that_opens(sim: Simulation, by: np.ndarray) -> np.ndarray:
     """Displacements of all blocks that open the points that press by so much [m], (n_blocks, n_dof)."""
     from scipy.sparse import diags
-    from scipy.sparse.linalg import splu
 
     d, joints, relief = sim.model.dimension, sim.joints, sim.settings.relief
     stiffness = np.column_stack([joints.kn, *[relief.sliding * joints.ks] * (d - 1)])
@@ -88,5 +88,5 @@ def _motion_that_opens(sim: Simulation, by: np.ndarray) -> np.ndarray:
     matrix += diags(relief.singular * np.where(diagonal > 0.0, diagonal, diagonal.max(initial=0.0)))
     moved = np.zeros_like(sim.bodies.velocities)
     columns = sim.model.rotations.stop
-    moved[sim.free, :columns] = splu(matrix).solve(weighted @ wanted.ravel()).reshape(-1, columns)
+    moved[sim.free, :columns] = solved_symmetric(matrix, weighted @ wanted.ravel()).reshape(-1, columns)
     return moved

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
+from dem_cli.arithmetic.small_matrices import inverse, solved
 from dem_cli.kernels.records import Joints, StrainRates
 from dem_cli.model.mode_masses import mass_matrices
 from dem_cli.model.model import NO_MODES, Model
@@ -48,8 +50,8 @@ class Damping:
 
 def joint_frequencies(model: Model, joints: Joints) -> np.ndarray:
     """√(K/M) of each joint [rad/s]: K all its normal springs, M the reduced mass of its blocks, (n_joints,)."""
-    inverse = np.where(model.fixed, 0.0, 1.0 / model.masses)[joints.blocks].sum(axis=1)
-    return np.sqrt(np.add.reduceat(joints.kn, joints.starts[:-1]) * inverse)
+    lightness = np.where(model.fixed, 0.0, 1.0 / model.masses)[joints.blocks].sum(axis=1)
+    return np.sqrt(np.add.reduceat(joints.kn, joints.starts[:-1]) * lightness)
 
 
 def element_numbers(elements: tuple[MaxwellElement, ...]) -> np.ndarray:
@@ -72,15 +74,15 @@ def strain_rates(model: Model, damping: Damping, dt: float) -> StrainRates:
         nothing = np.zeros((0, 0, 0))
         return StrainRates(nothing, nothing, NO_MODES, nothing, nothing, nothing, np.zeros(0), NO_MODES)
     whole = mass_matrices(model)
-    turns = np.linalg.solve(whole[:, :r, :r], whole[:, :r, r:])
-    masses = whole[:, r:, r:] - whole[:, r:, :r] @ turns
+    turns = solved(whole[:, :r, :r], whole[:, :r, r:])
+    masses = whole[:, r:, r:] - product(whole[:, r:, :r], turns)
     stiffness = model.mode_stiffness
     diagonal = np.diagonal(masses, axis1=1, axis2=2)
     viscosity = damping.stiffness * stiffness + 2.0 * damping.fraction * np.sqrt(stiffness * diagonal)
     lost = 0.5 * dt * (damping.mass * masses + viscosity[:, :, None] * np.eye(m))
-    inverse = np.linalg.inv(masses + lost)
+    mobile = inverse(masses + lost)
     moving = (stiffness > 0.0)[:, :, None]
-    parts = inverse @ (masses - lost), dt * inverse, inverse  # impulses of dashpots are of the same step
+    parts = product(mobile, masses - lost), dt * mobile, mobile  # impulses of dashpots are of the same step
     keep, gain, mobilities = (np.ascontiguousarray(np.where(moving, part, 0.0)) for part in parts)
     bends = model.mode_shapes.reshape(len(model.mode_shapes), 72)
     radii = model.shapes.radii

@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import norm, product
+from dem_cli.arithmetic.small_matrices import least_squares, singular
 from dem_cli.geometry.facets import Facets
 
 EXACT = 1e-9  # of the size of a block: faces and corners so close to their planes stay where they are
@@ -49,7 +51,7 @@ def on_common_planes(blocks: Sequence[Facets], pairs: np.ndarray, tolerance: flo
     pairs: numbers of blocks that come near each other, (n, 2); tolerance: how far apart what is one may lie [m].
     """
     faces = _faces(blocks)
-    sizes = np.array([np.linalg.norm(np.ptp(block.points, axis=0)) for block in blocks])[faces.owners]
+    sizes = np.array([norm(np.ptp(block.points, axis=0)) for block in blocks])[faces.owners]
     group = _groups(len(faces.owners), _facing(faces, pairs, tolerance))
     normals, heights, fitted, left = _planes(faces, group, EXACT * sizes, tolerance)
     points, moved, farthest = [], 0, 0.0
@@ -127,13 +129,13 @@ def _planes(
         lead = own[spans[own].argmax()]
         at = np.concatenate([np.arange(faces.starts[f], faces.starts[f + 1]) for f in own])
         corners = faces.corners[at]
-        signs = np.where((faces.normals[own] @ faces.normals[lead]) < 0.0, -1.0, 1.0)
-        off = np.abs(corners @ faces.normals[lead] - faces.heights[lead])
+        signs = np.where(product(faces.normals[own], faces.normals[lead]) < 0.0, -1.0, 1.0)
+        off = np.abs(product(corners, faces.normals[lead]) - faces.heights[lead])
         if off.max() <= exact[own].min():
             normal, height = faces.normals[lead], faces.heights[lead]
         else:
             normal, height = fitted_plane(corners, faces.normals[lead], tolerance)
-            if np.abs(corners @ normal - height).max() > tolerance:
+            if np.abs(product(corners, normal) - height).max() > tolerance:
                 left += len(own) > 1
                 continue
             fitted += 1
@@ -148,14 +150,14 @@ def fitted_plane(points: np.ndarray, towards: np.ndarray, tolerance: float) -> t
     """
     middle = points.mean(axis=0)
     arms = points - middle
-    normal = np.linalg.svd(arms, full_matrices=False)[2][-1] if len(points) >= points.shape[1] else towards
-    normal = normal if normal @ towards > 0.0 else -normal
+    normal = singular(arms)[2][:, -1] if len(points) >= points.shape[1] else towards
+    normal = normal if product(normal, towards) > 0.0 else -normal
     axis = int(np.abs(normal).argmax())
     straight = np.zeros_like(normal)
     straight[axis] = np.sign(normal[axis])
-    if np.abs(arms @ (normal - straight)).max() <= tolerance / 3.0:
+    if np.abs(product(arms, normal - straight)).max() <= tolerance / 3.0:
         normal = straight
-    return normal, float(middle @ normal)
+    return normal, float(product(middle, normal))
 
 
 def _corners(
@@ -168,11 +170,11 @@ def _corners(
         for corner in own.tolist():
             planes[corner].append(k)
     for corner, through in enumerate(planes):
-        rest = heights[through] - normals[through] @ points[corner]
+        rest = heights[through] - product(normals[through], points[corner])
         if not through or np.abs(rest).max() <= exact:
             continue
-        shift = np.linalg.pinv(normals[through], rcond=NEARLY_PARALLEL) @ rest
-        if np.linalg.norm(shift) > farthest:
+        shift = least_squares(normals[through], rest, NEARLY_PARALLEL)
+        if norm(shift) > farthest:
             stayed += 1
         else:
             points[corner] = points[corner] + shift

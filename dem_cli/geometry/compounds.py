@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.geometry.rotation import beside, cross
 from dem_cli.geometry.topology import Topology
 
@@ -31,7 +32,7 @@ def _covered(edge: np.ndarray, others: np.ndarray, reach: float) -> bool:
     length = float(np.hypot(*along))
     along = along / length
     arms = others - edge[0]
-    places, heights = arms @ along, arms @ np.array([along[1], -along[0]])
+    places, heights = product(arms, along), product(arms, np.array([along[1], -along[0]]))
     near = (np.abs(heights) <= reach).all(axis=0) & (places[1] < places[0])
     end = 1e-6 * length
     for k in np.argsort(places[1]):
@@ -57,12 +58,14 @@ def covered_faces(
     for i in np.flatnonzero(parts_of_block[block] > 1):
         others = np.flatnonzero((block == block[i]) & (part != part[i]))
         reach = INNER * sizes[part[i]]
-        against = (normals[others] @ normals[i] < -1.0 + INNER) & (
-            np.abs((corner[others] - corner[i]) @ normals[i]) <= reach
+        against = (product(normals[others], normals[i]) < -1.0 + INNER) & (
+            np.abs(product(corner[others] - corner[i], normals[i])) <= reach
         )
         flat = _face(vertices, topology, i)
         axes = np.column_stack([(first := beside(normals[[i]])[0]), np.cross(normals[i], first)])
-        shared = [clipped(flat @ axes, (_face(vertices, topology, j) @ axes)[::-1]) for j in others[against]]
+        shared = [
+            clipped(product(flat, axes), product(_face(vertices, topology, j), axes)[::-1]) for j in others[against]
+        ]
         inner[i] = sum(map(_area, shared)) >= (1.0 - INNER) * size[i]
     return inner
 

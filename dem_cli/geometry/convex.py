@@ -7,6 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
+from dem_cli.arithmetic.products import norm, product
+from dem_cli.arithmetic.small_matrices import determinants
+
 ROUND_OFF = 1e-12  # of the distance to the furthest corner
 
 
@@ -34,13 +38,13 @@ def distance(corners: np.ndarray, point: np.ndarray) -> float:
 
     rows, wanted = np.vstack([arms.T / scale, np.ones(len(arms))]), np.append(np.zeros(arms.shape[1]), 1.0)
     weights = lsq_linear(rows, wanted, (0.0, np.inf), method="bvls", tol=1e-15).x
-    away = float(np.linalg.norm(weights @ arms) / weights.sum())
+    away = float(norm(product(weights, arms)) / weights.sum())
     return away if away > ROUND_OFF * scale else 0.0
 
 
 def _all_on_one_side(arms: np.ndarray) -> bool:
     """Whether all corners are seen within less than half a turn, from outside; arms: to them [m], (n, 2)."""
-    angles = np.sort(np.arctan2(arms[:, 1], arms[:, 0]))
+    angles = np.sort(functions.arctan2(arms[:, 1], arms[:, 0]))
     return float(np.diff(angles, append=angles[0] + 2.0 * math.pi).max()) > math.pi
 
 
@@ -68,11 +72,11 @@ def common(normals: np.ndarray, offsets: np.ndarray) -> CommonBody | None:
         return None
     inside = found.x[:d]
     try:
-        rows = np.column_stack([normals, normals @ inside - offsets])
+        rows = np.column_stack([normals, product(normals, inside) - offsets])
         corners = HalfspaceIntersection(rows, np.zeros(d)).intersections
         facets = corners[ConvexHull(corners).simplices]
     except QhullError:
         return None
-    volumes = np.abs(np.linalg.det(facets)) / math.factorial(d)  # of the simplices between the facets and that point
+    volumes = np.abs(determinants(facets)) / math.factorial(d)  # of the simplices between the facets and that point
     centroids = facets.sum(axis=1) / (d + 1)
-    return CommonBody(float(volumes.sum()), inside + volumes @ centroids / volumes.sum())
+    return CommonBody(float(volumes.sum()), inside + product(volumes, centroids) / volumes.sum())

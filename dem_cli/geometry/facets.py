@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import norm, product
 from dem_cli.geometry.polyhedron import newell
 
 
@@ -29,7 +30,7 @@ class Facets(NamedTuple):
 
     def over(self) -> np.ndarray:
         """How far each corner lies in front of each side [m], (n, k)."""
-        return self.points @ self.normals.T - self.heights
+        return product(self.points, self.normals.T) - self.heights
 
     def triangles(self) -> tuple[np.ndarray, np.ndarray]:
         """The surface of a solid in triangles, fans of its pieces, and the side of each."""
@@ -63,9 +64,9 @@ def facets_of_surface(points: np.ndarray, loops: Sequence[np.ndarray], gap: floa
     for k in np.argsort(-sizes, kind="stable"):
         if sides[k] >= 0:
             continue
-        height = float((points[loops[k]] @ normals[k]).mean())
-        off = np.maximum.reduceat(np.abs(flat @ normals[k] - height), starts[:-1])
-        own = (sides < 0) & (off <= gap) & ((normals @ normals[k] > 0.5) | (sizes == 0.0))
+        height = float(product(points[loops[k]], normals[k]).mean())
+        off = np.maximum.reduceat(np.abs(product(flat, normals[k]) - height), starts[:-1])
+        own = (sides < 0) & (off <= gap) & ((product(normals, normals[k]) > 0.5) | (sizes == 0.0))
         own[k] = True
         sides[own] = len(found)
         found.append(normals[k])
@@ -86,8 +87,8 @@ def _flat(points: np.ndarray, loop: np.ndarray, gap: float) -> list[np.ndarray]:
     if len(loop) == 3:
         return [loop]
     area = newell(points[loop])
-    length = float(np.linalg.norm(area))
-    off = np.abs((points[loop] - points[loop].mean(axis=0)) @ area).max()
+    length = float(norm(area))
+    off = np.abs(product(points[loop] - points[loop].mean(axis=0), area)).max()
     if off <= gap * length:
         return [loop]
     return [np.array([loop[0], a, b]) for a, b in zip(loop[1:-1], loop[2:])]

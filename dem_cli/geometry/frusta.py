@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.geometry.polyhedron import Polyhedron, hull, newell, prism_faces
 
 
@@ -14,7 +15,7 @@ def frustum(low: np.ndarray, high: np.ndarray) -> Polyhedron:
     the wedge or pyramid that is left.
     """
     low, high = np.asarray(low, float), np.asarray(high, float)
-    if newell(low + high) @ (high - low).mean(axis=0) > 0.0:
+    if product(newell(low + high), (high - low).mean(axis=0)) > 0.0:
         low, high = low[::-1], high[::-1]
     corners = np.concatenate([low, high])
     different = list(dict.fromkeys(map(tuple, corners.tolist())))

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.geometry.polyhedron import ROUND_OFF, Polyhedron, size
 
 
@@ -22,7 +23,7 @@ def halves(solid: Polyhedron, normal: Sequence[float] | np.ndarray, height: floa
 
     Corners that lie on the plane but for round-off stay where they are, and belong to both.
     """
-    heights = solid.vertices @ np.asarray(normal, float) - height
+    heights = product(solid.vertices, np.asarray(normal, float)) - height
     heights[np.abs(heights) <= ROUND_OFF * size(solid.vertices)] = 0.0
     if (heights <= 0.0).all():
         return Halves(solid, None)

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
+
 
 def _inverse(moments: np.ndarray) -> np.ndarray:
     """1 over moments of inertia, 0 for supports."""
@@ -17,7 +19,7 @@ def _inverse(moments: np.ndarray) -> np.ndarray:
 
 def _along(axes: np.ndarray, turns: np.ndarray) -> np.ndarray:
     """Principal axes in the world, as columns, (n, 3, 3)."""
-    return turns.reshape(-1, 3, 3) @ axes.reshape(-1, 3, 3)
+    return product(turns.reshape(-1, 3, 3), axes.reshape(-1, 3, 3))
 
 
 def mobilities(moments: np.ndarray, axes: np.ndarray, turns: np.ndarray) -> np.ndarray:
@@ -25,7 +27,7 @@ def mobilities(moments: np.ndarray, axes: np.ndarray, turns: np.ndarray) -> np.n
     if moments.shape[1] == 1:
         return _inverse(moments)
     along = _along(axes, turns)
-    return ((along * _inverse(moments)[:, None, :]) @ along.swapaxes(1, 2)).reshape(-1, 9)
+    return product(along * _inverse(moments)[:, None, :], along.swapaxes(1, 2)).reshape(-1, 9)
 
 
 def along_principal(spins: np.ndarray, axes: np.ndarray, turns: np.ndarray) -> np.ndarray:

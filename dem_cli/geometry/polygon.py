@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
 from dem_cli.geometry.rotation import across, cross, turned_as_one
 
 ROUND_OFF = 1e-9  # relative to the size of the polygon: what counts as coincident or collinear
@@ -114,7 +115,7 @@ def are_convex(vertices: np.ndarray, starts: np.ndarray, tolerance: float = ROUN
     edges = vertices[after_each] - vertices
     after = edges[after_each]
     turns = cross(edges, after)
-    angles = np.add.reduceat(np.arctan2(turns, (edges * after).sum(axis=1)), starts[:-1])
+    angles = np.add.reduceat(functions.arctan2(turns, (edges * after).sum(axis=1)), starts[:-1])
     once_around = np.abs(angles - 2.0 * np.pi) < 1.0
     least = tolerance * sizes(vertices, starts) ** 2
     left_turns = np.minimum.reduceat(turns, starts[:-1]) >= -least

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import norm, product
 from dem_cli.geometry import polygon
 from dem_cli.geometry.rotation import beside, turned_as_one
 
@@ -24,7 +25,7 @@ class Polyhedron(NamedTuple):
 
 def size(vertices: np.ndarray) -> float:
     """Diagonal of the bounding box [m]."""
-    return float(np.linalg.norm(np.ptp(np.asarray(vertices, float), axis=0)))
+    return float(norm(np.ptp(np.asarray(vertices, float), axis=0)))
 
 
 def hull(points: Sequence | np.ndarray) -> Polyhedron:
@@ -36,7 +37,7 @@ def hull(points: Sequence | np.ndarray) -> Polyhedron:
     points = _checked(points)
     gap = COPLANAR * size(points)
     normals, heights = _planes(points, gap)
-    depth = (heights[None, :] - points @ normals.T).min(axis=1)
+    depth = (heights[None, :] - product(points, normals.T)).min(axis=1)
     if (depth > gap).any():
         k = int(depth.argmax())
         raise ValueError(
@@ -45,7 +46,7 @@ def hull(points: Sequence | np.ndarray) -> Polyhedron:
         )
     loops = []
     for normal, height in zip(normals, heights, strict=True):
-        loop = _outline(points, np.flatnonzero(np.abs(points @ normal - height) <= gap), normal, gap)
+        loop = _outline(points, np.flatnonzero(np.abs(product(points, normal) - height) <= gap), normal, gap)
         if len(loop) > 2:
             loops.append(loop)
     if _open_edge(loops) is not None:
@@ -186,18 +187,18 @@ def _planes(points: np.ndarray, gap: float) -> tuple[np.ndarray, np.ndarray]:
         if not waiting[k]:
             continue
         normal = found.equations[k, :3]
-        height = float((corners[k] @ normal).mean())
-        waiting &= (np.abs(corners @ normal - height) > gap).any(axis=1)
+        height = float(product(corners[k], normal).mean())
+        waiting &= (np.abs(product(corners, normal) - height) > gap).any(axis=1)
         waiting[k] = False
         normals.append(normal)
-        heights.append(height + float(middle @ normal))
+        heights.append(height + float(product(middle, normal)))
     return np.array(normals), np.array(heights)
 
 
 def _outline(points: np.ndarray, on: np.ndarray, normal: np.ndarray, gap: float) -> np.ndarray:
     """Numbers of the corners of a face around its outward normal, of those points that lie on its plane."""
     first = beside(normal[None])[0]
-    flat = points[on] @ np.column_stack([first, np.cross(normal, first)])
+    flat = product(points[on], np.column_stack([first, np.cross(normal, first)]))
     order = np.lexsort((flat[:, 0], flat[:, 1]))
     return on[order[polygon.outline(flat[order], gap)]] if len(on) > 2 else on
 
@@ -225,11 +226,11 @@ def _outwards(points: np.ndarray, loop: np.ndarray, number: int) -> np.ndarray:
     """A face, counter-clockwise seen from outside. Raises ValueError: not plane, not convex."""
     gap = COPLANAR * size(points)
     area = newell(points[loop])
-    length = float(np.linalg.norm(area))
+    length = float(norm(area))
     if length <= gap * size(points[loop]):
         raise ValueError(f"face {number} has no area")
     normal = area / length
-    heights = (points - points[loop].mean(axis=0)) @ normal
+    heights = product(points - points[loop].mean(axis=0), normal)
     off = np.abs(heights[loop])
     if off.max() > gap:
         k = loop[off.argmax()]
@@ -245,7 +246,7 @@ def _outwards(points: np.ndarray, loop: np.ndarray, number: int) -> np.ndarray:
     if heights.max() > gap:
         loop, normal = loop[::-1], -normal
     edges = np.roll(points[loop], -1, axis=0) - points[loop]
-    turns = np.cross(edges, np.roll(edges, -1, axis=0)) @ normal
+    turns = product(np.cross(edges, np.roll(edges, -1, axis=0)), normal)
     if turns.min() < -gap * size(points[loop]):
         k = np.roll(loop, -1)[turns.argmin()]
         raise ValueError(f"face {number} is not convex at corner {k + 1}, {_text(points[k])}")

@@ -11,6 +11,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
+from dem_cli.arithmetic.products import product
+
 
 def turned_by(vectors: np.ndarray, cosines: np.ndarray | float, sines: np.ndarray | float) -> np.ndarray:
     """Vectors (..., 2) turned by angles of which cosines and sines are known, one for each or one for all."""
@@ -26,10 +29,10 @@ def turned(vectors: np.ndarray, angles: np.ndarray | float) -> np.ndarray:
 def turned_as_one(vectors: np.ndarray, rotation: np.ndarray | float) -> np.ndarray:
     """Vectors (n, d) turned about the origin as one, by an angle or a rotation vector (3,) [rad], with matrices."""
     if vectors.shape[1] == 3:
-        return vectors @ matrices(np.reshape(rotation, (1, 3)))[0].T
+        return product(vectors, matrices(np.reshape(rotation, (1, 3)))[0].T)
     angle = float(np.asarray(rotation).item())
     c, s = np.cos(angle), np.sin(angle)
-    return vectors @ np.array([[c, s], [-s, c]])
+    return product(vectors, np.array([[c, s], [-s, c]]))
 
 
 def across(vectors: np.ndarray) -> np.ndarray:
@@ -123,7 +126,7 @@ def angles_of(orientations: np.ndarray) -> np.ndarray:
         return orientations[:, 0]
     if orientations.shape[1] == 3:
         return np.linalg.norm(orientations, axis=1)
-    return 2.0 * np.arctan2(np.linalg.norm(orientations[:, 1:], axis=1), np.abs(orientations[:, 0]))
+    return 2.0 * functions.arctan2(np.linalg.norm(orientations[:, 1:], axis=1), np.abs(orientations[:, 0]))
 
 
 def leans_of(orientations: np.ndarray) -> np.ndarray:
@@ -131,13 +134,13 @@ def leans_of(orientations: np.ndarray) -> np.ndarray:
     if orientations.shape[1] == 1:
         return np.abs(orientations[:, 0])
     _, x, y, _ = quaternions(orientations).T
-    return 2.0 * np.arcsin(np.clip(np.hypot(x, y), 0.0, 1.0))
+    return 2.0 * functions.arcsin(np.clip(np.hypot(x, y), 0.0, 1.0))
 
 
 def angles_between(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """By how much each block has turned from one orientation to another [rad], (n,): in space from 0 to π."""
     if one.shape[1] == 4:
-        return 2.0 * np.arccos(np.clip(np.abs((one * other).sum(axis=1)), 0.0, 1.0))
+        return 2.0 * functions.arccos(np.clip(np.abs((one * other).sum(axis=1)), 0.0, 1.0))
     return np.linalg.norm(one - other, axis=1)
 
 
@@ -147,7 +150,7 @@ def rotation_vectors(orientations: np.ndarray) -> np.ndarray:
         return orientations
     shorter = orientations * np.where(orientations[:, :1] < 0.0, -1.0, 1.0)
     sines = np.linalg.norm(shorter[:, 1:], axis=1, keepdims=True)
-    angles = 2.0 * np.arctan2(sines, shorter[:, :1])
+    angles = 2.0 * functions.arctan2(sines, shorter[:, :1])
     return shorter[:, 1:] * np.divide(angles, sines, out=np.full_like(sines, 2.0), where=sines > 0.0)
 
 

@@ -11,6 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
+from dem_cli.arithmetic.products import norm, product
+from dem_cli.arithmetic.small_matrices import determinants
 from dem_cli.geometry.polyhedron import newell
 
 ROUND_OFF = 1e-9  # of the size: points that are one, heights that are none
@@ -31,10 +34,10 @@ class Sides(NamedTuple):
 
 def convex_pieces(sides: Sides) -> list[np.ndarray]:
     """Corners (n, 3) of convex pieces that fill a solid. Raises ValueError: too many, or they do not fill it."""
-    size = float(np.linalg.norm(np.ptp(sides.points, axis=0)))
+    size = float(norm(np.ptp(sides.points, axis=0)))
     rough = roughness(sides)
     gap = max(ROUND_OFF * size, 2.0 * rough)
-    over = sides.points @ sides.normals.T - sides.heights
+    over = product(sides.points, sides.normals.T) - sides.heights
     through = set(np.flatnonzero((over > THIN * size).any(axis=0)).tolist())
     faces = [(k, sides.points[corners]) for k, corners in zip(sides.planes, sides.triangles) if k in through]
     waiting, leaves = [(hull_corners(sides.points), faces)], []
@@ -70,7 +73,7 @@ def roughness(sides: Sides) -> float:
 def solid_volume(sides: Sides) -> float:
     """Volume of a solid by the triangles of its surface [m3]."""
     arms = sides.points[sides.triangles] - sides.points.mean(axis=0)
-    return abs(float(np.linalg.det(arms).sum())) / 6.0
+    return abs(float(determinants(arms).sum())) / 6.0
 
 
 def volume(corners: np.ndarray) -> float:
@@ -100,7 +103,7 @@ def _best(sides: Sides, faces: list[tuple[int, np.ndarray]], gap: float) -> int 
     for k in dict.fromkeys(k for k, _ in faces):
         cuts = 0
         for j, piece in faces:
-            heights = piece @ sides.normals[k] - sides.heights[k]
+            heights = product(piece, sides.normals[k]) - sides.heights[k]
             cuts += j != k and heights.min() < -gap and heights.max() > gap
         if cuts < least:
             chosen, least = k, cuts
@@ -109,7 +112,7 @@ def _best(sides: Sides, faces: list[tuple[int, np.ndarray]], gap: float) -> int 
 
 def _half(cell: np.ndarray, normal: np.ndarray, height: float, known: np.ndarray, gap: float) -> np.ndarray | None:
     """Corners of the part of a convex piece below a plane; None: there is nothing of it."""
-    over = cell @ normal - height
+    over = product(cell, normal) - height
     if over.min() >= -gap:
         return None
     if over.max() <= gap:
@@ -137,7 +140,7 @@ def _clipped(piece: np.ndarray, normal: np.ndarray, height: float, gap: float) -
     """The part of a flat convex side (corners in order, (n, 3)) below a plane; Sutherland and Hodgman 1974."""
     if not len(piece):
         return piece
-    over = piece @ normal - height
+    over = product(piece, normal) - height
     over = np.where(np.abs(over) <= gap, 0.0, over)
     after, over_after = np.roll(piece, -1, axis=0), np.roll(over, -1)
     kept = []
@@ -151,7 +154,7 @@ def _clipped(piece: np.ndarray, normal: np.ndarray, height: float, gap: float) -
 
 def _width(piece: np.ndarray) -> float:
     """How wide a flat side is: the square root of its area [m]."""
-    return float(np.sqrt(np.linalg.norm(newell(piece)))) if len(piece) > 2 else 0.0
+    return float(np.sqrt(norm(newell(piece)))) if len(piece) > 2 else 0.0
 
 
 def _winding(sides: Sides, point: np.ndarray) -> float:
@@ -161,7 +164,7 @@ def _winding(sides: Sides, point: np.ndarray) -> float:
     a, b, c = arms[:, 0], arms[:, 1], arms[:, 2]
     la, lb, lc = lengths.T
     below = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
-    return abs(float(2.0 * np.arctan2(np.linalg.det(arms), below).sum())) / (4.0 * np.pi)
+    return abs(float(2.0 * functions.arctan2(determinants(arms), below).sum())) / (4.0 * np.pi)
 
 
 def _joined(pieces: list[np.ndarray], rough: float) -> list[np.ndarray]:
@@ -173,7 +176,7 @@ def _joined(pieces: list[np.ndarray], rough: float) -> list[np.ndarray]:
         for j in range(k + 1, len(left)):
             both = np.concatenate([left[k], left[j]])
             together = sizes[k] + sizes[j]
-            span = float(np.linalg.norm(np.ptp(both, axis=0)))
+            span = float(norm(np.ptp(both, axis=0)))
             if volume(both) <= together * (1.0 + SAME_VOLUME) + rough * span**2:
                 gap = max(ROUND_OFF * span, 2.0 * rough)
                 left[k], sizes[k] = hull_corners(_apart(both, gap)), together

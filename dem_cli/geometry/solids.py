@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.small_matrices import determinants, diagonalised
 from dem_cli.geometry.topology import Topology
 
 DIAGONAL = 1e-13  # of the trace: products of inertia that are round-off
@@ -91,7 +92,7 @@ def principal(tensors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     scale = np.trace(tensors, axis1=1, axis2=2)[:, None, None]
     tidy = np.where((np.abs(tensors) <= DIAGONAL * scale) & ~np.eye(3, dtype=bool), 0.0, tensors)
-    moments, axes = np.linalg.eigh(tidy)
+    moments, axes = diagonalised(tidy)
     order = np.empty((len(tensors), 3), np.int64)
     rows, free = np.arange(len(tensors)), np.ones((len(tensors), 3), bool)
     for k in range(3):  # of the columns that are left, that which is nearest to axis k
@@ -101,7 +102,7 @@ def principal(tensors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     axes = np.take_along_axis(axes, order[:, None, :], axis=2)
     signs = np.where(np.diagonal(axes, axis1=1, axis2=2) < 0.0, -1.0, 1.0)
     axes = axes * signs[:, None, :]
-    axes[:, :, 2] *= np.where(np.linalg.det(axes) < 0.0, -1.0, 1.0)[:, None]
+    axes[:, :, 2] *= np.where(determinants(axes) < 0.0, -1.0, 1.0)[:, None]
     return moments, quaternions_of(axes)
 
 

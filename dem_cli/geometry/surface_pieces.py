@@ -9,13 +9,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
+from dem_cli.arithmetic.products import norm, product
+
 ON_PLANE = 1e-12  # of the size of a piece: so close to a plane a corner lies on it
 GAUSS = 0.5 / np.sqrt(3.0)  # of a segment, from its middle: two points are exact for cubics
 
 
 def kept(piece: np.ndarray, normal: np.ndarray, offset: float) -> np.ndarray:
     """What of a piece lies in a half-space; (0, d): nothing. Sutherland and Hodgman (1974)."""
-    heights = piece @ normal - offset
+    heights = product(piece, normal) - offset
     heights[np.abs(heights) <= ON_PLANE * np.ptp(piece, axis=0).sum()] = 0.0
     if (heights <= 0.0).all():
         return piece
@@ -61,7 +64,7 @@ def measure(piece: np.ndarray) -> float:
         return 0.0
     if piece.shape[1] == 2:
         return float(np.hypot(*(piece[1] - piece[0])))
-    return 0.5 * float(np.linalg.norm(_products(piece[1:-1] - piece[0], piece[2:] - piece[0]).sum(axis=0)))
+    return 0.5 * float(norm(_products(piece[1:-1] - piece[0], piece[2:] - piece[0]).sum(axis=0)))
 
 
 def quadrature(piece: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -94,24 +97,24 @@ def over_disc(piece: np.ndarray, centre: np.ndarray, radius: float) -> tuple[flo
         for a, b, beyond in ((start, enters, shares[0] > 0.0), (leaves, end, shares[1] < 1.0)):
             if beyond:
                 from_, to = a / np.hypot(*a), b / np.hypot(*b)
-                doubled += radius**2 * np.arctan2(_cross(a, b), a @ b)
+                doubled += radius**2 * functions.arctan2(_cross(a, b), product(a, b))
                 moments += radius**3 / 3.0 * np.array([to[1] - from_[1], from_[0] - to[0]])
     if doubled == 0.0:
         return 0.0, piece.mean(axis=0)
     normal = _products(piece[1:-1] - piece[0], piece[2:] - piece[0]).sum(axis=0)
     place = centre + moments / (0.5 * doubled)
-    height = piece[0, 2] - normal[:2] @ (place - piece[0, :2]) / normal[2]
+    height = piece[0, 2] - product(normal[:2], place - piece[0, :2]) / normal[2]
     return 0.5 * abs(doubled), np.append(place, height)
 
 
 def _within(start: np.ndarray, end: np.ndarray, radius: float) -> tuple[float, float]:
     """Shares of the way between two points (2,) at which it enters and leaves a circle about the origin."""
     along = end - start
-    length = along @ along
+    length = product(along, along)
     beside = _cross(start, along) ** 2
     if beside >= radius**2 * length:
         return 0.0, 0.0
-    middle, half = -(start @ along) / length, np.sqrt(radius**2 * length - beside) / length
+    middle, half = -product(start, along) / length, np.sqrt(radius**2 * length - beside) / length
     return min(max(middle - half, 0.0), 1.0), min(max(middle + half, 0.0), 1.0)
 
 

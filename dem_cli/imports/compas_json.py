@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.imports.contents import Contents, FileBody, FileProblem, finite
 
 MESH, ELEMENTS = "compas.datastructures/Mesh", "elements"
@@ -119,7 +120,7 @@ def _box(data: dict[str, Any]) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
     half = np.array([data[f"{x}size"] for x in "xyz"], float) / 2.0
     signs = np.array([[i, j, k] for k in (-1, 1) for j in (-1, 1) for i in (-1, 1)], float)
     loops = ([0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5])
-    return signs * half @ axes + np.array(frame["point"], float), tuple(np.array(loop) for loop in loops)
+    return product(signs * half, axes) + np.array(frame["point"], float), tuple(np.array(loop) for loop in loops)
 
 
 def _transformed(points: np.ndarray, transformation: Any) -> np.ndarray:
@@ -129,4 +130,4 @@ def _transformed(points: np.ndarray, transformation: Any) -> np.ndarray:
     matrix = np.array(data["matrix"] if isinstance(data, dict) else data, float)
     if (matrix == np.eye(4)).all():
         return points
-    return points @ matrix[:3, :3].T + matrix[:3, 3]
+    return product(points, matrix[:3, :3].T) + matrix[:3, 3]

@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
+from dem_cli.arithmetic.products import norm, product
 from dem_cli.geometry.polyhedron import newell, size
 from dem_cli.imports.contents import FileBody, FileProblem
 
@@ -45,7 +47,7 @@ def shells_of(body: FileBody) -> list[Shell]:
             return _solids(body.points, loops, edges.pairs())
     points, numbers = _merged(body.points)
     loops = [loop for loop in (_tidy(numbers[loop]) for loop in body.faces) if len(loop) > 2]
-    loops = [loop for loop in loops if np.linalg.norm(newell(points[loop])) > (SAME_POINT * size(points[loop])) ** 2]
+    loops = [loop for loop in loops if norm(newell(points[loop])) > (SAME_POINT * size(points[loop])) ** 2]
     if not loops:
         raise FileProblem("its faces have no area")
     edges = _Edges(loops)
@@ -129,7 +131,7 @@ def _around(points: np.ndarray, loops: list[np.ndarray], edges: _Edges, edge: in
     """Pairs of faces that are sides of one solid, of four or more faces that meet in an edge, (n, 3)."""
     start, end = edges.keys[edge]
     along = points[end] - points[start]
-    along = along / np.linalg.norm(along)
+    along = along / norm(along)
     sides = edges.sides(edge)
     forward = edges.ends[sides, 0] == start
     if forward.sum() * 2 != len(sides):
@@ -140,9 +142,9 @@ def _around(points: np.ndarray, loops: list[np.ndarray], edges: _Edges, edge: in
         )
     normals = np.array([newell(points[loops[face]]) for face in edges.faces[sides]])
     inwards = np.cross(normals, along) * np.where(forward, 1.0, -1.0)[:, None]  # from the edge into the face
-    axis = inwards[0] - (inwards[0] @ along) * along
-    axis = axis / np.linalg.norm(axis)
-    angles = np.arctan2(inwards @ np.cross(along, axis), inwards @ axis)
+    axis = inwards[0] - product(inwards[0], along) * along
+    axis = axis / norm(axis)
+    angles = functions.arctan2(product(inwards, np.cross(along, axis)), product(inwards, axis))
     found = []
     for k in np.flatnonzero(forward):  # what is inside lies clockwise about the edge of a face that runs along it
         away = (angles[k] - angles) % (2.0 * np.pi)

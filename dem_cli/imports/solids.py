@@ -7,6 +7,8 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from dem_cli.arithmetic.products import norm
+from dem_cli.arithmetic.small_matrices import determinants, singular
 from dem_cli.geometry import polygon, polyhedron
 from dem_cli.geometry.common_planes import Snapped, on_common_planes
 from dem_cli.geometry.decomposition import convex_parts, is_simple
@@ -79,7 +81,7 @@ def solids_of(bodies: Sequence[FileBody], factor: float, how: Reading) -> tuple[
 def rounding(bodies: Sequence[FileBody], factor: float) -> float:
     """What a file may have rounded off [m]: 1e-6 of the size of all, and the last digits of single precision."""
     places = np.concatenate([body.points for body in bodies])
-    size = float(np.linalg.norm(np.ptp(places, axis=0)))
+    size = float(norm(np.ptp(places, axis=0)))
     single = bool((places == places.astype(np.float32)).all())
     return factor * max(ROUNDED * size, SINGLE * float(np.abs(places).max()) if single else 0.0)
 
@@ -106,7 +108,7 @@ def closed_outline(ring: np.ndarray) -> np.ndarray:
     """An outline counter-clockwise, each corner once. Raises FileProblem."""
     found = polygon.simplified(ring)
     least = polygon.ROUND_OFF * polygon.size(ring)
-    if len(found) < 3 or np.linalg.svd(found - found.mean(axis=0), compute_uv=False)[1] <= least:
+    if len(found) < 3 or singular(found - found.mean(axis=0))[1][1] <= least:
         raise FileProblem("its corners lie on one line: it has no area")
     found = found if polygon.signed_area(found) > 0.0 else found[::-1]
     if not is_simple(found):
@@ -193,7 +195,7 @@ def _convex(facets: Facets) -> Any:
 def _volume(solid: polyhedron.Polyhedron) -> float:
     loops = [(loop[0], a, b) for loop in solid.faces for a, b in zip(loop[1:-1], loop[2:])]
     arms = solid.vertices[np.array(loops)] - solid.vertices.mean(axis=0)
-    return float(np.linalg.det(arms).sum()) / 6.0
+    return float(determinants(arms).sum()) / 6.0
 
 
 def _text(point: np.ndarray) -> str:

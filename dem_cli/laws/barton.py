@@ -14,6 +14,7 @@ from typing import Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from dem_cli.arithmetic import functions
 from dem_cli.case.base import KeyProblem, Positive
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
@@ -74,7 +75,7 @@ def shear_limit(parameters, normal, memory, kn):
     """N tan φ of the stress of each point [N]."""
     stiffness, roughness, strength, residual, low, _, _ = parameters[:, :7].T
     stress = np.clip(normal * stiffness / kn, np.maximum(low, np.finfo(float).tiny), strength)
-    return np.tan(residual + roughness * np.log10(strength / stress)) * normal
+    return functions.tan(residual + roughness * functions.log10(strength / stress)) * normal
 
 
 def columns(table, kn):

@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-import numpy as np
 from pydantic import Field
 
+from dem_cli.arithmetic import functions
 from dem_cli.case.base import Positive
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
@@ -52,7 +52,7 @@ def degrading(gap, slide, shear, kn, ks, parameters, joint, memory, point):
 def shear_limit(parameters, normal, memory, kn):
     """Friction after the slip so far × normal force [N]."""
     fresh, worn, length = parameters[:, :3].T
-    return (worn + (fresh - worn) * np.exp(-memory[:, 0] / length)) * normal
+    return (worn + (fresh - worn) * functions.exp(-memory[:, 0] / length)) * normal
 
 
 SLIP_DEGRADING = Law(

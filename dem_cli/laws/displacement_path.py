@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dem_cli.arithmetic.products import product
 from dem_cli.case.base import CaseModel
 from dem_cli.kernels.contact_point import make_press
 from dem_cli.laws.law import Law
@@ -78,8 +79,8 @@ def drive(
         if law.bonded or row[0] < 0.0 or old[0] != 0.0:
             lost += press(row[0], moved[0], tuple(moved[1:]), joint, contact, 0, 0)[2]
         forces = np.array([*contact.normal, *contact.shear[0]])
-        work -= 0.5 * (old + forces) @ moved
-        elastic = 0.5 * (forces[0] ** 2 / joint.kn[0] + forces[1:] @ forces[1:] / joint.ks[0])
+        work -= product(0.5 * (old + forces), moved)
+        elastic = 0.5 * (forces[0] ** 2 / joint.kn[0] + product(forces[1:], forces[1:]) / joint.ks[0])
         rows.append((forces[0], forces[1:], contact.slip[0], lost, work, elastic, contact.memory[0].copy()))
         before = row
     return PathResponse(path, *(np.array(column) for column in zip(*rows, strict=True)))

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.errors import UsageError
 from dem_cli.interrupts import look
 from dem_cli.laws.envelope import Envelope
@@ -161,13 +162,13 @@ def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
     amounts = program.cone.admissible(found.amounts)
     forces, axial = program.split(program.cone.forces(amounts))
     imbalance = s.imbalance(forces.ravel(), found.multiplier, axial)
-    power = float(s.live @ found.velocities)
+    power = float(product(s.live, found.velocities))
     if not (np.isfinite(imbalance).all() and power > 0.0):
         return _refusal(program, f"{GIVEN_UP}: the solver says {found.said}")
     velocities = found.velocities / power
     residual = float(np.abs(imbalance).max())
-    lower = found.multiplier - float((np.abs(imbalance) * s.scales) @ np.abs(velocities))
-    upper = _work(program, velocities, amounts) - float(program.dead @ velocities)
+    lower = found.multiplier - float(product(np.abs(imbalance) * s.scales, np.abs(velocities)))
+    upper = _work(program, velocities, amounts) - float(product(program.dead, velocities))
     settings = program.settings
     gap = (upper - lower) / max(abs(found.multiplier), settings.nothing * program.load)
     normal, shear = forces[:, 0].copy(), forces[:, 1:].copy()
@@ -198,7 +199,7 @@ def _falls(program: Program, found: ProgramSolution) -> tuple[str, float]:
     Error: power of all dead loads together, as a contact force, against the largest violation; over dead power.
     """
     velocities, cone = found.velocities, program.cone
-    power = float(program.dead @ velocities) - _work(program, velocities)
+    power = float(product(program.dead, velocities)) - _work(program, velocities)
     violation = float(cone.outside(program.motion @ velocities)[cone.cap < 0].max(initial=0.0))
     error = violation * program.weight * program.n_blocks / power if power > 0.0 else np.inf
     return _proved(program, FALLS, error, found), error
@@ -223,9 +224,9 @@ def _proved(program: Program, claim: str, error: float, found: ProgramSolution) 
 def _work(program: Program, velocities: np.ndarray, amounts: np.ndarray | None = None) -> float:
     """What yields at the caps in a mechanism, and the violations elsewhere against forces that are given."""
     cone, motion = program.cone, program.motion @ velocities
-    work = float(cone.most @ cone.yielding(motion))
+    work = float(product(cone.most, cone.yielding(motion)))
     if amounts is not None:
-        work += float(amounts[cone.leading] @ np.where(cone.cap < 0, cone.outside(motion), 0.0))
+        work += float(product(amounts[cone.leading], np.where(cone.cap < 0, cone.outside(motion), 0.0)))
     return work
 
 

@@ -20,7 +20,7 @@ from scipy.sparse import vstack
 
 from dem_cli.contact.compatibility import free_columns, relative_motion
 from dem_cli.limit.matrices import Structure
-from dem_cli.limit.newton_matrix import Factors, PointRows, newton_matrix
+from dem_cli.limit.newton_matrix import FrontFactors, NewtonMatrix, PointRows
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings, PathSettings
 from dem_cli.limit.slip_cones import SlipCones
 from dem_cli.limit.slip_pairs import SlipPairs
@@ -108,13 +108,10 @@ class Elastic:
         self.own = structure.scales * self.columns / self.weight  # own weights, for residuals
         self.lightest = min(1.0, float(self.own.min(initial=1.0))) ** 2  # square of the weight of the lightest block
         self.factorisations = 0
-        elastic = [self.kn, *self.slips.elastic(self.ks)]
-        self.matrix = newton_matrix(self._points(structure), elastic, settings.path)
+        self.matrix = NewtonMatrix(self._points(structure), settings.path)
         self.order = order = self.matrix.order
         motion = vstack([scaled[k::d] for k in range(d)])[:, order]  # openings, then slides as shear is numbered
-        small = motion.shape[0] * motion.shape[1] <= settings.path.dense
-        self.motion = motion.toarray() if small else motion.tocsr()
-        self.pull = np.ascontiguousarray(self.motion.T) if small else self.motion.T.tocsr()
+        self.motion, self.pull = motion.tocsr(), motion.T.tocsr()
         self.columns, self.dead, self.live, self.own = (
             values[order] for values in (self.columns, self.dead, self.live, self.own)
         )
@@ -146,11 +143,11 @@ class Elastic:
         places = structure.model.centroids[~structure.model.fixed]
         return PointRows(rows, columns, ((0, 0), *self.slips.products_of_rows), len(self.columns), places)
 
-    def elastic(self, share: np.ndarray | float = 1.0) -> Factors:
+    def elastic(self, share: np.ndarray | float = 1.0) -> FrontFactors:
         """LU of the structure while nothing slips; share: of the stiffness of every point."""
         return self.factorised(share * self.kn, self.slips.elastic(share * self.ks))
 
-    def factorised(self, stiff_n: np.ndarray, tangential: list[np.ndarray]) -> Factors:
+    def factorised(self, stiff_n: np.ndarray, tangential: list[np.ndarray]) -> FrontFactors:
         """LU of Bnᵀ kN Bn + Btᵀ kT Bt − Btᵀ c Bn; tangential: kT and −c (limit.slips: SlipStiffness.stiffness).
 
         Factors of the call before are lost. Raises RuntimeError where it is singular.

@@ -18,9 +18,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import diags
 
+from dem_cli.arithmetic.products import product
 from dem_cli.contact.compatibility import free_columns, relative_motion
 from dem_cli.interrupts import look
-from dem_cli.limit.newton_matrix import FrontMatrix, PointRows
+from dem_cli.limit.newton_matrix import NewtonMatrix, PointRows
 from dem_cli.limit.program import ANSWERED, UNKNOWN, Program, ProgramSolution
 from dem_cli.limit.settings import DEFAULT_LIMIT
 
@@ -38,7 +39,7 @@ class Feasible(NamedTuple):
     @property
     def mean(self) -> float:
         """Mean product."""
-        return float(self.slack @ self.amounts) / max(len(self.slack), 1)
+        return float(product(self.slack, self.amounts)) / max(len(self.slack), 1)
 
     @property
     def inside(self) -> bool:
@@ -85,7 +86,7 @@ class FrontalProgram:
         rows = relative_motion(structure.joints, 2) * scale[:, None]
         places = structure.model.centroids[~structure.model.fixed]
         points = PointRows(rows, columns, PRODUCTS, len(structure.scales), places)
-        self.matrix = FrontMatrix(points, replace(DEFAULT_LIMIT.path, singular=self.settings.singular))
+        self.matrix = NewtonMatrix(points, replace(DEFAULT_LIMIT.path, singular=self.settings.singular))
         self.order = order = self.matrix.order
         self.motion = (program.motion @ diags(program.weight / structure.scales)).tocsr()[:, order]
         self.forces = self.motion.T.tocsr()
@@ -120,26 +121,26 @@ class FrontalProgram:
         if not self._factorise(Feasible(self.right, 0.0, ones, ones)):
             return Feasible(0.0 * self.right, 0.0, ones, np.full(len(ones), np.nan))
         dead = self.factors.solve(self.right)
-        compliance = float(self.live @ self.by_live) if self.loaded else 1.0
-        load = float(self.live @ dead) / compliance
+        compliance = float(product(self.live, self.by_live)) if self.loaded else 1.0
+        load = float(product(self.live, dead)) / compliance
         amounts, x = self.motion @ (dead - load * self.by_live), self.by_live / compliance
         slack = self.motion @ x if self.loaded else ones
         amounts, slack = (values + max(-1.5 * float(values.min()), 0.0) for values in (amounts, slack))
-        both = 0.5 * float(amounts @ slack)
+        both = 0.5 * float(product(amounts, slack))
         amounts, slack = amounts + both / slack.sum(), slack + both / amounts.sum()
         return Feasible(x, load, slack, amounts)
 
     def _residuals(self, at: Feasible) -> None:
         self.unbalanced = self.right - self.forces @ at.amounts - at.load * self.live
         self.off_motion = at.slack - self.motion @ at.x
-        self.off_power = float(1.0 - self.live @ at.x) if self.loaded else 0.0
+        self.off_power = float(1.0 - product(self.live, at.x)) if self.loaded else 0.0
 
     def _done(self, at: Feasible) -> bool:
         """Whether forces balance and both bounds are close."""
         settings = self.settings
         if not np.abs(self.unbalanced).max() < settings.balanced * settings.residual:
             return False
-        open_gap = at.slack @ at.amounts + np.abs(self.off_motion) @ at.amounts
+        open_gap = product(at.slack, at.amounts) + product(np.abs(self.off_motion), at.amounts)
         return not self.loaded or bool(open_gap < settings.closed * settings.gap * max(abs(at.load), settings.nothing))
 
     def _factorise(self, at: Feasible) -> bool:
@@ -160,7 +161,7 @@ class FrontalProgram:
         right = self.forces @ (pushed + self.stiff * self.off_motion) - self.unbalanced
         x, load = self._bordered(right, self.off_power)
         left = right + load * self.live - self.forces @ (self.stiff * (self.motion @ x))
-        more, on = self._bordered(left, self.off_power - float(self.live @ x))
+        more, on = self._bordered(left, self.off_power - float(product(self.live, x)))
         x, load = x + more, load + on
         slack = self.motion @ x - self.off_motion
         return Feasible(x, load, slack, pushed - self.stiff * slack)
@@ -169,7 +170,7 @@ class FrontalProgram:
         x = self.factors.solve(right)
         if not self.loaded:
             return x, 0.0
-        load = (power - float(self.live @ x)) / float(self.live @ self.by_live)
+        load = (power - float(product(self.live, x))) / float(product(self.live, self.by_live))
         return x + load * self.by_live, load
 
     def _next(self, at: Feasible) -> Feasible:

@@ -15,6 +15,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
+from dem_cli.arithmetic.products import product
 from dem_cli.interrupts import look
 from dem_cli.limit.elastic import Direction, Elastic, State
 from dem_cli.limit.settings import InteriorPointSettings
@@ -202,23 +204,23 @@ class Increment:
             relative = slips.relative(at.x, tau * along.positive)
             if not np.abs(relative).max() < settings.endless:
                 return None
-            tangent = np.append(relative, 1.0) / np.sqrt(relative @ relative + 1.0)
-            tangent *= -1.0 if last is None else np.sign(tangent @ last)
+            tangent = np.append(relative, 1.0) / np.sqrt(product(relative, relative) + 1.0)
+            tangent *= -1.0 if last is None else np.sign(product(tangent, last))
             on_path = on_path or (self.straight < settings.feasible and spread < settings.wide)
             change = 0.0
             if on_path:  # the corrector stays in the plane across the tangent
                 offset = slips.relative(at.x, onto.positive)
-                change = -(offset @ tangent[:-1]) / (relative @ tangent[:-1] + tangent[-1])
+                change = -product(offset, tangent[:-1]) / (product(relative, tangent[:-1]) + tangent[-1])
                 if spread < settings.wide:
                     fall, growth = slips.extremes(tangent[:-1])
                     fastest = max(-fall, settings.growing * growth)
                     change += tangent[-1] * settings.stride / max(fastest, abs(tangent[-1]) / settings.by_tau)
                     last = tangent
-                change = float(np.clip(change, max(np.log(self.end / tau), -settings.down), settings.up))
+                change = float(np.clip(change, max(functions.log(self.end / tau), -settings.down), settings.up))
             step = onto.and_on(along, tau * change)
             length = self._to_boundary(at, step)
             self._move(at, step, length)
-            tau *= np.exp(length * change)
+            tau *= functions.exp(length * change)
         return None
 
     # -- Newton ---------------------------------------------------------------------------------------
@@ -235,7 +237,7 @@ class Increment:
         if self.displacement is None:
             self.off_target = self.target - at.load
         else:
-            self.off_target = self.displacement - problem.live @ at.u
+            self.off_target = self.displacement - product(problem.live, at.u)
         linear, turning = (
             max(float(np.abs(off).max(initial=0.0)) for off in parts)
             for parts in ((self.unbalanced, self.off_gap), (self.off_slide, self.off_reserve))
@@ -283,7 +285,7 @@ class Increment:
         if self.displacement is None:
             load = off_target
         else:
-            load = (off_target - problem.live @ u) / (problem.live @ self.by_live)
+            load = (off_target - product(problem.live, u)) / product(problem.live, self.by_live)
         u = u + load * self.by_live
         moved = problem.motion @ u
         closing, slide = moved[: problem.n_points], moved[problem.n_points :]

@@ -1,19 +1,18 @@
 """Newton's matrix of elastic, frictional joints, Σ f rowᵢᵀ rowⱼ over all points, factorised again and again.
 
-Its pattern is that of blocks that touch and stays, so that order and fill are found once. Two ways, one contract:
-SuperLU, and from some hundred degrees of freedom on dense fronts in compiled code (limit/fronts.py), which take a third
-of its time, and half a second to load.
+Its pattern is that of blocks that touch and stays, so that order and fill are found once. It lies in dense fronts
+(limit/fronts.py) and is factorised by compiled code: that takes a third of the time of SuperLU, whose BLAS moreover
+gives other last digits on other processors, and a path may end elsewhere by them.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csc_matrix
 
+from dem_cli.limit.fronts import fronts_of, parts_of
 from dem_cli.limit.settings import PathSettings
-from dem_cli.limit.sparse_factors import Factors, SparseFactors, factors_of
 
 
 class PointRows(NamedTuple):
@@ -31,81 +30,13 @@ class PointRows(NamedTuple):
         return self.columns.shape[2]
 
 
-class NewtonMatrix(Protocol):
-    """The matrix of one structure; degrees of freedom are those of `order`, one after the other."""
+class NewtonMatrix:
+    """The matrix of one structure; degrees of freedom are those of `order`, one after the other.
 
-    order: np.ndarray
-
-    def factorised(self, factors: list[np.ndarray]) -> Factors:
-        """LU factors of the matrix whose products have these factors; those of the last call are lost.
-
-        Raises RuntimeError where it is singular.
-        """
-
-
-def newton_matrix(points: PointRows, elastic: list[np.ndarray], settings: PathSettings) -> NewtonMatrix:
-    """The matrix of a structure; elastic: factors of its products while nothing slips."""
-    if not len(points.rows) or points.n_columns < settings.in_fronts:
-        return SparseMatrix(points, elastic, settings)
-    return FrontMatrix(points, settings)
-
-
-class SparseMatrix:
-    """By SuperLU, degrees of freedom in the order of minimum degree."""
-
-    def __init__(self, points: PointRows, elastic: list[np.ndarray], settings: PathSettings) -> None:
-        self.settings, self.order = settings, np.arange(points.n_columns)
-        self._pattern(points)
-        self.permutation = "MMD_AT_PLUS_A"
-        if points.n_columns and len(points.rows):
-            self.order = np.argsort(self.factorised(elastic).perm_c)
-            self._pattern(points)
-            self.permutation = "NATURAL"
-
-    def _pattern(self, points: PointRows) -> None:
-        """Where the entries of every point go, and what they are made of."""
-        n_points, n = len(points.rows), points.n_columns
-        place = np.empty_like(self.order)
-        place[self.order] = np.arange(n)
-        dofs = points.columns.reshape(n_points, -1)
-        dofs = np.where(dofs < 0, -1, place[np.maximum(dofs, 0)]) if n else dofs
-        along = [points.rows[:, k].reshape(n_points, -1) for k in range(points.rows.shape[1])]
-        self.outer = []
-        for first, second in points.products:
-            outer = np.einsum("pi,pj->pij", along[first], along[second])
-            if 0 < first < second:  # of two tangents, either way round
-                outer = outer + outer.swapaxes(1, 2)
-            self.outer.append(outer.reshape(n_points, -1))
-        self.work = np.empty((2, *self.outer[0].shape))
-        i, j = np.repeat(dofs, dofs.shape[1], axis=1), np.tile(dofs, dofs.shape[1])
-        used = (i >= 0) & (j >= 0)
-        own = np.arange(n) * (n + 1)  # the diagonal is there even of what restraints hold
-        keys = np.unique(np.concatenate([j[used].astype(np.int64) * n + i[used], own]))
-        place = np.searchsorted(keys, j[used].astype(np.int64) * n + i[used])
-        self.indices, self.indptr = keys % n, np.searchsorted(keys // n, np.arange(n + 1))
-        self.place = np.full(used.size, len(keys))  # entries of fixed blocks go behind all others
-        self.place[used.ravel()] = place
-        self.diagonal = np.flatnonzero(self.indices == keys // n)
-        self.matrix = csc_matrix((np.zeros(len(keys)), self.indices, self.indptr), shape=(n, n))
-
-    def factorised(self, factors: list[np.ndarray]) -> SparseFactors:
-        """As NewtonMatrix has it."""
-        values, more = self.work
-        np.multiply(factors[0][:, None], self.outer[0], out=values)
-        for factor, outer in zip(factors[1:], self.outer[1:], strict=True):
-            values += np.multiply(factor[:, None], outer, out=more)
-        data = np.bincount(self.place, values.ravel(), len(self.indices) + 1)[:-1]
-        data[self.diagonal] += self.settings.singular * np.abs(data[self.diagonal]).mean()
-        self.matrix.data = data
-        return factors_of(self.matrix, self.permutation, self.settings.pivot)
-
-
-class FrontMatrix:
-    """In dense fronts; no rows are exchanged."""
+    No rows are exchanged.
+    """
 
     def __init__(self, points: PointRows, settings: PathSettings) -> None:
-        from dem_cli.limit.fronts import fronts_of, parts_of
-
         n_dof = points.n_dof
         blocks = points.columns.max(axis=2) // n_dof  # −1: fixed
         blocks = np.where((points.columns >= 0).any(axis=2), blocks, -1)
@@ -133,7 +64,10 @@ class FrontMatrix:
             self.part = np.empty((2 * n_dof, 2 * n_dof))
 
     def factorised(self, factors: list[np.ndarray]) -> FrontFactors:
-        """As NewtonMatrix has it."""
+        """LU factors of the matrix whose products have these factors; those of the last call are lost.
+
+        Raises RuntimeError where it is singular.
+        """
         from dem_cli.limit.front_factors import add_to_diagonal, factorise
 
         fronts, values = self.fronts, self.values
@@ -158,10 +92,10 @@ class FrontMatrix:
 class FrontFactors(NamedTuple):
     """LU factors in fronts."""
 
-    matrix: FrontMatrix
+    matrix: NewtonMatrix
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        """As Factors has it."""
+        """The solution, (n_columns,)."""
         from dem_cli.limit.front_factors import solve_in_fronts
 
         found = right.copy()

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.errors import UsageError
 from dem_cli.limit.elastic import Elastic, State
 from dem_cli.limit.interior import Increment
@@ -156,7 +157,7 @@ class Walk:
     def __init__(self, problem: Elastic, standing: State, stop: Callable[[], bool]) -> None:
         self.problem, self.settings, self.stop = problem, problem.settings.path, stop
         self.state = standing
-        self.origin, self.elastic = float(problem.live @ standing.displacements), _compliance(problem, standing)
+        self.origin, self.elastic = float(product(problem.live, standing.displacements)), _compliance(problem, standing)
         self.reached = 0.0
         self.share = 1.0  # of the longest increment, that the next one is tried with
         self.last: Stride | None = None
@@ -314,7 +315,7 @@ def _compliance(problem: Elastic, state: State) -> float:
     path = problem.settings.path
     closed = state.normal > path.loaded * state.normal.max(initial=1.0)
     share = np.where(closed, 1.0, path.opened)
-    return float(problem.live @ problem.elastic(share).solve(problem.live))
+    return float(product(problem.live, problem.elastic(share).solve(problem.live)))
 
 
 def _polish(path: Path, structure: Structure, problem: Elastic, stride: Stride, reached: float) -> None:
@@ -349,7 +350,7 @@ def _keep(
     load = state.load * problem.live_scale
     path.loads.append(load)
     path.reached.append(reached)
-    path.live_displacements.append(float(structure.live @ moved))
+    path.live_displacements.append(float(product(structure.live, moved)))
     if path.load is not None and load < path.load:
         return False  # softer than before: the structure fails where the load was highest
     path.load, path.highest = load, len(path.loads) - 1
@@ -361,6 +362,6 @@ def _keep(
     path.gaps = np.where(closed, -state.normal / problem.kn, np.maximum(gaps, 0.0)) * problem.unit
     path.displacements = structure.on_blocks(moved)
     motion = moved - problem.displacements((since or before).displacements)
-    power = float(structure.live @ motion)
+    power = float(product(structure.live, motion))
     path.mechanism = structure.on_blocks(motion / power) if power > 0.0 else structure.on_blocks(0.0 * motion)
     return True

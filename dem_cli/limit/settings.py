@@ -50,11 +50,8 @@ class PathSettings:
     least_friction: float = 1e-6  # of points without friction: negligible, and the equations stay the same
     loaded: float = 1e-6  # of the largest normal force: a point with less counts as open, ...
     opened: float = 1e-6  # ... and has this share of its stiffness, for the compliance of the start
-    dense: int = 20_000  # entries of the motions of all points up to which they are kept in full, with their zeros
-    in_fronts: int = 300  # degrees of freedom from which on factors are dense fronts in compiled code
     points_summed: float = 3.0  # of a joint in space, from which on they are summed before they go into the fronts
     cones_compiled: int = 1000  # points in space from which on their friction is worked out in compiled code
-    pivot: float = 1e-3  # of the largest in its column, below which a diagonal entry is no pivot
     singular: float = 1e-13  # added to the diagonal, over its mean
 
 

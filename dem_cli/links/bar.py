@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.small_matrices import root
 from dem_cli.links.bar_forces import make_bar_forces
 from dem_cli.links.chain import Chain
 from dem_cli.links.drawn_bar import DrawnBar, Reinforcement, elements_of, nodes_of
@@ -124,7 +125,7 @@ class Bars(NamedTuple):
 
     def _factor(self, number: int) -> np.ndarray:
         """L of K = L Lᵀ, lower triangular."""
-        found: np.ndarray = np.linalg.cholesky(self.chain(number).condensed())
+        found: np.ndarray = root(self.chain(number).condensed())
         return found
 
     def acting(self) -> np.ndarray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.kernels.jit import overload
 
 
@@ -34,7 +35,7 @@ def turned_arms(turns: np.ndarray, arms: np.ndarray) -> np.ndarray:
     if arms.shape[1] == 2:
         cosine, sine = turns.T
         return np.column_stack([cosine * arms[:, 0] - sine * arms[:, 1], sine * arms[:, 0] + cosine * arms[:, 1]])
-    return (turns.reshape(-1, 3, 3) @ arms[:, :, None])[:, :, 0]
+    return product(turns.reshape(-1, 3, 3), arms[:, :, None])[:, :, 0]
 
 
 def cross_rows(arms: np.ndarray, along: np.ndarray) -> np.ndarray:

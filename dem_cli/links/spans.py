@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.links.link import FIXED_POINT, LinkEnds
 from dem_cli.links.material_points import cross_rows, turned_arms
 
@@ -88,7 +89,7 @@ class Spans(NamedTuple):
         n_dof = d + (1 if d == 2 else 3)
         across = [np.eye(d)[k] - axes * axes[:, k : k + 1] for k in range(d)]
         rows = np.stack([self.motion(side, arms).reshape(n, 2 * n_dof) for side in across], axis=1)
-        found = rows.swapaxes(1, 2) @ rows / lengths[:, None, None]
+        found = product(rows.swapaxes(1, 2), rows) / lengths[:, None, None]
         for side, sign in ((0, -1.0), (1, 1.0)):
             arm, held = arms[:, side], self.blocks[:, side] != FIXED_POINT
             along = (axes * arm).sum(axis=1)[:, None, None]

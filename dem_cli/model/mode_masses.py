@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.geometry.rotation import matrices
 from dem_cli.model.model import Model
 from dem_cli.model.quadratic_modes import quadrature, terms
@@ -81,9 +82,9 @@ def _with_quadratic_modes(model: Model, linear: np.ndarray) -> np.ndarray:
     found = np.zeros((n, k + shapes.shape[1], k + shapes.shape[1]))
     found[:, :k, :k] = linear
     for block, (points, masses) in enumerate(_particles(model)):
-        bent = shapes[block] @ terms(points).T  # (6, 2, n_points)
+        bent = product(shapes[block], terms(points).T)  # (6, 2, n_points)
         gradients = np.concatenate([_TURNS[2], BASIS[2] / model.shapes.radii[block]])
-        moved = gradients @ points.T
+        moved = product(gradients, points.T)
         found[block, k:, k:] = np.einsum("kip,lip,p->kl", bent, bent, masses)
         found[block, :k, k:] = np.einsum("kip,lip,p->kl", moved, bent, masses)
         found[block, k:, :k] = found[block, :k, k:].T

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
+from dem_cli.arithmetic.small_matrices import diagonalised, inverse, root
 from dem_cli.geometry.rotation import turned_by
 from dem_cli.model.uniform_strain import strains
 
@@ -57,19 +59,20 @@ def _of_block(parts: list[np.ndarray], young: float, poisson: float) -> tuple[np
     pure = np.zeros((N_QUADRATIC, 2, TERMS))
     for k in range(3):
         pure[k, 0, 3 + k] = pure[3 + k, 1, 3 + k] = 1.0
-    moved = pure @ values.T  # (6, 2, n_points)
-    turn = (moved[:, 1] * points[:, 0] - moved[:, 0] * points[:, 1]) @ weights / ((points**2).sum(axis=1) @ weights)
-    pure[:, :, 0] = -(moved @ weights) / area
+    moved = product(pure, values.T)  # (6, 2, n_points)
+    turn = product(moved[:, 1] * points[:, 0] - moved[:, 0] * points[:, 1], weights) / (
+        product((points**2).sum(axis=1), weights)
+    )
+    pure[:, :, 0] = -product(moved, weights) / area
     pure[:, 0, 2], pure[:, 1, 1] = turn, -turn
-    moved = pure @ values.T
+    moved = product(pure, values.T)
     metric = np.einsum("kip,lip,p->kl", moved, moved, weights) / area
     elastic = _elasticity(pure, points, weights, young, poisson)
     scales = 1.0 / np.sqrt(np.diag(metric))  # of round-off alone
-    root = np.linalg.cholesky(metric * np.outer(scales, scales))
-    inverse = np.linalg.inv(root) * scales
-    levels, vectors = np.linalg.eigh(inverse @ elastic @ inverse.T)
-    found = np.einsum("kl,lim->kim", vectors.T @ inverse, pure)
-    reach = np.hypot(*np.moveaxis(found @ terms(np.concatenate(parts)).T, 1, 0)).max(axis=1)
+    own = inverse(root(metric * np.outer(scales, scales))) * scales
+    levels, vectors = diagonalised(product(product(own, elastic), own.T))
+    found = np.einsum("kl,lim->kim", product(vectors.T, own), pure)
+    reach = np.hypot(*np.moveaxis(product(found, terms(np.concatenate(parts)).T), 1, 0)).max(axis=1)
     return levels / reach**2, found / reach[:, None, None]
 
 
@@ -78,8 +81,8 @@ def _elasticity(
 ) -> np.ndarray:
     """∫ ε : C : ε of each two fields, plane stress [N/m], (6, 6)."""
     (x, y), zero, one = points.T, np.zeros(len(points)), np.ones(len(points))
-    by_x = shapes @ np.stack([zero, one, zero, 2.0 * x, y, zero])  # (6, 2, n_points)
-    by_y = shapes @ np.stack([zero, zero, one, zero, x, 2.0 * y])
+    by_x = product(shapes, np.stack([zero, one, zero, 2.0 * x, y, zero]))  # (6, 2, n_points)
+    by_y = product(shapes, np.stack([zero, zero, one, zero, x, 2.0 * y]))
     strain = np.stack([by_x[:, 0], by_y[:, 1], by_y[:, 0] + by_x[:, 1]])
     plane = np.array([[1.0, poisson, 0.0], [poisson, 1.0, 0.0], [0.0, 0.0, (1.0 - poisson) / 2.0]])
     plane *= young / (1.0 - poisson**2)

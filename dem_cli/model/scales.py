@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
 from dem_cli.model.model import Model
 
 REMOTE_BLOCKS = 1e3  # times the extent of the blocks that can move: from there on coordinates count from among them
@@ -52,7 +53,9 @@ def stiffness_scale(model: Model) -> float:
     if not free.any():
         return 1.0
     weight = mean_weight(model.dead_loads[free], model.live_loads[free], model.dimension)
-    sides = model.shapes.volumes[free] ** ((model.dimension - 1.0) / model.dimension)  # in space already the area
+    sides = functions.power(
+        model.shapes.volumes[free], (model.dimension - 1.0) / model.dimension
+    )  # in space already the area
     joint = float(sides.mean() * model.thickness[free].mean())
     return weight / (joint * smallest_edge(model))
 

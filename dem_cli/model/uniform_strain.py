@@ -9,6 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
+from dem_cli.arithmetic.small_matrices import diagonalised, inverse
+
 _PLANAR = np.array([[[1.0, 0.0], [0.0, 1.0]], [[1.0, 0.0], [0.0, -1.0]], [[0.0, 1.0], [1.0, 0.0]]])
 _SPATIAL = np.array(
     [
@@ -80,20 +83,23 @@ def components(stresses: np.ndarray) -> np.ndarray:
 def gradients_of(modes: np.ndarray, radii: np.ndarray, turns: np.ndarray) -> np.ndarray:
     """Deformation gradients R (I + ε), row by row, (n_blocks, d·d); turns: as kernels.records.Bodies."""
     d = _basis_of(modes).shape[1]
-    return (rotations_of(turns) @ (np.eye(d) + strains(modes, radii))).reshape(-1, d * d)
+    return product(rotations_of(turns), np.eye(d) + strains(modes, radii)).reshape(-1, d * d)
 
 
 def covectors_of(gradients: np.ndarray) -> np.ndarray:
     """F⁻ᵀ of gradients F, row by row: what takes normals of faces along, (n_blocks, d·d)."""
     d = int(np.sqrt(gradients.shape[1]))
-    return np.linalg.inv(gradients.reshape(-1, d, d)).swapaxes(1, 2).reshape(-1, d * d)
+    return inverse(gradients.reshape(-1, d, d)).swapaxes(1, 2).reshape(-1, d * d)
 
 
 def rotated_basis(gradients: np.ndarray) -> np.ndarray:
     """R B_k F⁻¹ of blocks with gradients F (n_blocks, d, d): velocity gradients of their modes, (n_blocks, m, d, d)."""
-    left, _, right = np.linalg.svd(gradients)
-    rotations, basis = left @ right, BASIS[gradients.shape[1]]
-    return np.einsum("nij,mjk,nkl->nmil", rotations, basis, np.linalg.inv(gradients))
+    backwards, basis = inverse(gradients), BASIS[gradients.shape[1]]
+    _, axes = diagonalised(product(gradients.swapaxes(1, 2), gradients))
+    turned = product(gradients, axes)
+    lengths = np.sqrt((turned**2).sum(axis=1))[:, None]
+    rotations = product(turned / lengths, axes.swapaxes(1, 2))  # of the polar decomposition
+    return np.einsum("nij,mjk,nkl->nmil", rotations, basis, backwards)
 
 
 def rotations_of(turns: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
 from dem_cli.motion.eurocode import LONGEST_PERIOD, TargetSpectrum
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.spectrum import response_spectrum
@@ -60,7 +61,7 @@ def strength(motion: Motion) -> IntensityMeasures:
 def compared_periods(first_period: float | None = None) -> np.ndarray:
     """Periods at which Eurocode 8 compares, 0.2 T1 to 2 T1; where T1 is not known, 0.04 s to 4 s, (n,)."""
     low, high = (SHORTEST, LONGEST_PERIOD) if first_period is None else (0.2 * first_period, 2.0 * first_period)
-    return np.geomspace(low, high, PERIODS)
+    return functions.geometric(low, high, PERIODS)
 
 
 def fit(motions: Sequence[Motion], target: TargetSpectrum, first_period: float | None = None) -> SpectrumFit:

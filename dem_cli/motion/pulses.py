@@ -9,6 +9,8 @@ import math
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
+
 PER_CYCLE = 200  # time steps that show a cycle
 RICKER_HALF = 1.5  # half length of the wavelet in periods: the acceleration is 1e-8 of its peak there
 
@@ -102,7 +104,7 @@ class RickerWavelet:
     def acceleration(self, t: np.ndarray) -> np.ndarray:
         """[m/s2] at times t [s]."""
         x = self.rate * (t - self.middle)
-        return self.amplitude * (1.0 - 2.0 * x * x) * np.exp(-x * x)
+        return self.amplitude * (1.0 - 2.0 * x * x) * functions.exp(-x * x)
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
         """[m/s] at times t [s]."""
@@ -114,11 +116,11 @@ class RickerWavelet:
 
     def _velocity(self, t: np.ndarray | float) -> np.ndarray:
         x = self.rate * (t - self.middle)
-        return self.amplitude / self.rate * x * np.exp(-x * x)
+        return self.amplitude / self.rate * x * functions.exp(-x * x)
 
     def _displacement(self, t: np.ndarray | float) -> np.ndarray:
         x = self.rate * (t - self.middle)
-        return -0.5 * self.amplitude / self.rate**2 * np.exp(-x * x)
+        return -0.5 * self.amplitude / self.rate**2 * functions.exp(-x * x)
 
 
 class RectangularPulses:

@@ -6,6 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
+from dem_cli.arithmetic.small_matrices import least_squares
+
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
@@ -77,10 +80,10 @@ def corrected(acceleration: PPoly, order: int) -> PPoly:
     end = times[-1]
     powers = np.arange(1, order + 2)
     weights = np.sqrt(np.gradient(times))
-    basis = (times[:, None] / end) ** powers
+    basis = functions.power(times[:, None] / end, powers)
     velocity = acceleration.antiderivative()(times)
-    fitted = np.linalg.lstsq(weights[:, None] * basis, weights * velocity, rcond=None)[0]
-    drift = Polynomial([0.0, *(fitted / end**powers)]).deriv()  # of the acceleration
+    fitted = least_squares(weights[:, None] * basis, weights * velocity)
+    drift = Polynomial([0.0, *(fitted / functions.power(end, powers))]).deriv()  # of the acceleration
     taylor, factorial = [], 1.0  # about the start of each piece, lowest power first
     for k in range(order + 1):
         factorial *= max(k, 1)

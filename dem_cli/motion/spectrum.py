@@ -6,9 +6,13 @@ Seism. Soc. Am. 59 (1969). Their recursion x(i+1) = A x(i) + B (a(i), a(i+1)) is
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
+
+from dem_cli.arithmetic import functions
+from dem_cli.arithmetic.products import product
 
 SAMPLES_PER_PERIOD = 60  # samples per period at least; crests between them are found by a cubic
 
@@ -36,7 +40,7 @@ class OscillatorFilter(NamedTuple):
 
 def periods(shortest: float = 0.02, longest: float = 4.0, count: int = 120) -> np.ndarray:
     """Periods of a picture [s], evenly spread over the logarithm, (count,)."""
-    return np.geomspace(shortest, longest, count)
+    return functions.geometric(shortest, longest, count)
 
 
 def response_spectrum(
@@ -126,14 +130,14 @@ def exponential(matrix: np.ndarray) -> np.ndarray:
 
     SciPy's expm starts threads, even for a 4 × 4 matrix: a hundred times slower where other work is going on.
     """
-    halvings = max(0, int(np.ceil(np.log2(np.abs(matrix).sum(axis=1).max()))) + 1)
+    halvings = max(0, int(np.ceil(math.log2(np.abs(matrix).sum(axis=1).max()))) + 1)
     part = matrix / 2.0**halvings
     total = term = np.eye(len(matrix))
     for k in range(1, TERMS):
-        term = term @ part / k
+        term = product(term, part) / k
         total = total + term
     for _ in range(halvings):
-        total = total @ total
+        total = product(total, total)
     return total
 
 
@@ -151,7 +155,7 @@ def free_vibration(u: np.ndarray, v: np.ndarray, omega: float, damping: float) -
     """Displacement and velocity over the period after a state (..., 1), without acceleration, (..., POINTS + 1)."""
     damped, rate = omega * np.sqrt(1.0 - damping * damping), damping * omega
     times = np.linspace(0.0, 2.0 * np.pi / omega, SAMPLES_PER_PERIOD + 1)
-    decay, cosine, sine = np.exp(-rate * times), np.cos(damped * times), np.sin(damped * times)
+    decay, cosine, sine = functions.exp(-rate * times), np.cos(damped * times), np.sin(damped * times)
     return (
         decay * (u * cosine + (v + rate * u) / damped * sine),
         decay * (v * cosine - (rate * v + omega * omega * u) / damped * sine),

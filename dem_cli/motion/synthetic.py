@@ -12,6 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
+from dem_cli.arithmetic.products import product
+from dem_cli.arithmetic.small_matrices import inverse
 from dem_cli.motion.eurocode import TargetSpectrum, target_of
 from dem_cli.motion.record import Accelerogram, record
 from dem_cli.motion.spectrum import OscillatorFilter, oscillator, pseudo_accelerations
@@ -44,8 +47,10 @@ def suite(table: ArtificialTable, seed: int, stream: int = 0) -> list[Accelerogr
 def envelope(times: np.ndarray, rise: float, plateau: float) -> np.ndarray:
     """(t/rise)² up to `rise`, 1 for `plateau`, then, if time is left, an exponential down to 0.05 at its end, (n,)."""
     end = rise + plateau
-    decay = -np.log(END_LEVEL) / max(times[-1] - end, 1e-9)
-    return np.where(times < end, np.minimum(times / rise, 1.0) ** 2, np.exp(-decay * np.maximum(times - end, 0.0)))
+    decay = -functions.log(END_LEVEL) / max(times[-1] - end, 1e-9)
+    return np.where(
+        times < end, np.minimum(times / rise, 1.0) ** 2, functions.exp(-decay * np.maximum(times - end, 0.0))
+    )
 
 
 def power_spectrum(target: TargetSpectrum, omegas: np.ndarray) -> np.ndarray:
@@ -54,11 +59,15 @@ def power_spectrum(target: TargetSpectrum, omegas: np.ndarray) -> np.ndarray:
     G(ω) = [Sa²/r² − ∫₀^ω G dω] / [ω (π/(4ξ') − 1)], ξ' = ξ/(1 − exp(−2ξωs)), s = 10 s, r the peak factor with
     probability p = 0.5 (Vanmarcke 1976). `omegas` even and increasing [rad/s].
     """
-    damping = target.damping / (1.0 - np.exp(-2.0 * target.damping * omegas * EQUIVALENT))
-    crossings = omegas * EQUIVALENT / (2.0 * np.pi) / -np.log(QUANTILE)
-    bandwidth = (4.0 * damping / np.pi) ** 0.6
-    inner = 2.0 * crossings * (1.0 - np.exp(-bandwidth * np.sqrt(np.pi * np.log(np.maximum(2.0 * crossings, 1.01)))))
-    peak_factor = np.sqrt(2.0 * np.log(np.maximum(inner, 1.1)))
+    damping = target.damping / (1.0 - functions.exp(-2.0 * target.damping * omegas * EQUIVALENT))
+    crossings = omegas * EQUIVALENT / (2.0 * np.pi) / -functions.log(QUANTILE)
+    bandwidth = functions.power(4.0 * damping / np.pi, 0.6)
+    inner = (
+        2.0
+        * crossings
+        * (1.0 - functions.exp(-bandwidth * np.sqrt(np.pi * functions.log(np.maximum(2.0 * crossings, 1.01)))))
+    )
+    peak_factor = np.sqrt(2.0 * functions.log(np.maximum(inner, 1.1)))
     variances = (target(2.0 * np.pi / omegas) / peak_factor) ** 2
     widths = omegas * (np.pi / (4.0 * damping) - 1.0)
     power, below, step = np.empty(len(omegas)), 0.0, omegas[1] - omegas[0]
@@ -102,7 +111,7 @@ def accelerograms(
 def _controls(target: TargetSpectrum, step: float) -> tuple[np.ndarray, list[OscillatorFilter], np.ndarray]:
     """Circular frequencies at which the spectrum is corrected, their oscillators, and the target there."""
     shortest = max(CONTROLLED[0], 2.0 * step)
-    omegas = 2.0 * np.pi / np.geomspace(shortest, CONTROLLED[1], CONTROLS)[::-1]
+    omegas = 2.0 * np.pi / functions.geometric(shortest, CONTROLLED[1], CONTROLS)[::-1]
     return omegas, [oscillator(w, target.damping, step) for w in omegas], target(2.0 * np.pi / omegas)
 
 
@@ -125,12 +134,12 @@ def _at_rest(times: np.ndarray, shape: np.ndarray) -> Return:
     to_displacement[-1] += step**2 / 6.0
     functionals = np.stack((to_velocity, to_displacement))
     forms = np.stack((shape, shape * times / times[-1]))
-    solve = np.linalg.inv(functionals @ forms.T)
+    solve = inverse(product(functionals, forms.T))
 
     def corrected(histories: np.ndarray) -> np.ndarray:
         for _ in range(2):  # the second time takes the rounding of the first
             left = np.einsum("...j,kj->...k", histories, functionals)  # a matrix product would start threads for this
-            histories = histories - left @ solve.T @ forms
+            histories = histories - product(product(left, solve.T), forms)
         return histories
 
     return corrected
@@ -147,16 +156,16 @@ def _raised(history: np.ndarray, ground: float, times: np.ndarray, rest: Return)
         if missing <= 0.0:
             break
         x = np.pi / WAVELET * np.arange(-top, len(times) - top)
-        wavelet = (1.0 - 2.0 * x * x) * np.exp(-x * x)
+        wavelet = (1.0 - 2.0 * x * x) * functions.exp(-x * x)
         history = rest(history + 1.0001 * np.sign(history[top]) * missing * wavelet)
     return history
 
 
 def _at(omegas: np.ndarray, controls: np.ndarray, ratios: np.ndarray) -> np.ndarray:
     """Ratios of the spectrum, interpolated to the frequencies of the sines, (count, n_sines)."""
-    return np.stack([np.interp(np.log(omegas), np.log(controls), row) for row in ratios])
+    return np.stack([np.interp(functions.log(omegas), functions.log(controls), row) for row in ratios])
 
 
 def _badness(ratios: np.ndarray) -> np.ndarray:
     """Root mean square of log ratios, with places below what Eurocode 8 allows counted on top, (count,)."""
-    return np.sqrt((np.log(ratios) ** 2).mean(axis=1)) + np.maximum(LEAST - ratios, 0.0).max(axis=1)
+    return np.sqrt((functions.log(ratios) ** 2).mean(axis=1)) + np.maximum(LEAST - ratios, 0.0).max(axis=1)

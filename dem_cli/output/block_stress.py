@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dem_cli.arithmetic.small_matrices import diagonalised
 from dem_cli.model.model import Model
 from dem_cli.output.record import Frame
 
@@ -28,4 +29,4 @@ def mean_stresses(model: Model, frame: Frame) -> np.ndarray:
 
 def principal_values(stresses: np.ndarray) -> np.ndarray:
     """Principal values of symmetric tensors (n, d, d), the largest tension first, (n, d)."""
-    return np.linalg.eigvalsh(stresses)[:, ::-1]
+    return diagonalised(stresses)[0][:, ::-1]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
 from dem_cli.errors import UsageError
 from dem_cli.output.atomic_file import whole
 from dem_cli.output.csv_cells import cell
@@ -30,7 +31,7 @@ def joints_of(results: Results) -> JointHistory:
 def steepness(joints: JointHistory) -> np.ndarray:
     """Angle of each joint to the horizontal [rad], (n,): 0 of a bed joint, π/2 of a head joint."""
     normals = np.abs(joints.places.normals)
-    return np.arctan2(np.hypot.reduce(normals[:, :-1], axis=1), normals[:, -1])
+    return functions.arctan2(np.hypot.reduce(normals[:, :-1], axis=1), normals[:, -1])
 
 
 def write_joints(results: Results, frame: int, path: Path) -> Path:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.contact.joints import only_points
 from dem_cli.engine.placement import moves
 from dem_cli.errors import UsageError
@@ -144,7 +145,7 @@ class ImplicitControl(DisplacementControl):
         """Puts the blocks where an increment takes them, with its shear forces; gaps follow from the geometry."""
         problem, before, kept, on_blocks = posed
         slid = problem.slid(found.displacements) + (found.shear - before.shear) / problem.ks_t
-        friction = -float(found.shear @ slid) * problem.weight * problem.unit
+        friction = -float(product(found.shear, slid)) * problem.weight * problem.unit
         shear = self.sim.contacts.shear.copy()
         shear[kept] = found.shear.reshape(-1, int(kept.sum())).T * problem.weight
         motion = on_blocks(problem.displacements(found.displacements))

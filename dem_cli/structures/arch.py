@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from dem_cli.arithmetic import functions
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
 from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
@@ -171,7 +172,7 @@ def _segmental(arch: Arch) -> np.ndarray:
     if rise > half * (1.0 + 1e-9):
         message = f"{rise:g} is not allowed; must be at most {half:g} (half the span, a semicircle)"
         raise KeyProblem(message, "rise")
-    half_angle = 2.0 * np.arctan2(rise, half)
+    half_angle = 2.0 * functions.arctan2(rise, half)
     return _arc(half / np.sin(half_angle), arch.ring, half_angle, arch.voussoirs)
 
 
@@ -188,7 +189,7 @@ def _pointed(arch: Arch) -> np.ndarray:
     inner = value if key == "inner_radius" else (half**2 + value**2) / span
     radii = np.array([inner, inner + arch.ring])
     centre = max(inner - half, 0.0)
-    angles = np.arccos(centre / inner) * np.arange(sides + 1) / sides  # of the left arc, from its springing
+    angles = functions.arccos(centre / inner) * np.arange(sides + 1) / sides  # of the left arc, from its springing
     left = np.stack([-np.cos(angles), np.sin(angles)], axis=1)[:, None, :] * radii[None, :, None]
     left[:, :, 0] += centre
     left[-1] = np.stack([[0.0, 0.0], np.sqrt(radii**2 - centre**2)], axis=1)  # vertical at the top
@@ -198,7 +199,7 @@ def _pointed(arch: Arch) -> np.ndarray:
 def _flat(arch: Arch) -> np.ndarray:
     (span,) = _required(arch, "span")
     inner = span * (np.arange(arch.voussoirs + 1) / arch.voussoirs - 0.5)
-    slope = np.tan(np.radians(20.0 if arch.skew_deg is None else arch.skew_deg))
+    slope = functions.tan(np.radians(20.0 if arch.skew_deg is None else arch.skew_deg))
     outer = inner * (1.0 + arch.ring * slope / (span / 2.0))
     joints = np.zeros((arch.voussoirs + 1, 2, 2))
     joints[:, 0, 0], joints[:, 1, 0], joints[:, 1, 1] = inner, outer, arch.ring

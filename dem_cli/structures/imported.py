@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
+from dem_cli.arithmetic.products import norm
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
 from dem_cli.case.named_file import absolute_path, missing_file
 from dem_cli.imports.contents import UNITS, Contents, FileBody, FileProblem, unit_of
@@ -277,7 +278,7 @@ def _below(table: Import, parts: Sequence[Any]) -> bool:
     if table.fixed_below is None:
         return False
     corners = np.concatenate([getattr(part, "vertices", part) for part in parts])
-    size = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    size = float(norm(np.ptp(corners, axis=0)))
     return bool(corners[:, -1].max() <= table.fixed_below + 1e-6 * size)
 
 

@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
+from dem_cli.arithmetic.products import product
 from dem_cli.geometry import cuts, polygon
 
 Box = tuple[float, float, float, float]  # left, bottom, right, top [m]
@@ -135,11 +137,11 @@ def _aimed(joints: np.ndarray, shape: np.ndarray, full: bool) -> np.ndarray:
         if not full and k in (0, len(joints) - 1):
             continue  # springing joints
         before, after = chords[k - 1], chords[k % len(chords)]
-        turn = np.arctan2(abs(before[0] * after[1] - before[1] * after[0]), before @ after)
+        turn = functions.arctan2(abs(before[0] * after[1] - before[1] * after[0]), product(before, after))
         way = (outer[k] - joints[k, 0]) / np.hypot(*(outer[k] - joints[k, 0]))
         arms = shape - outer[k]
         off = np.abs(arms[:, 0] * way[1] - arms[:, 1] * way[0])
-        ahead = np.flatnonzero((off < near) & (off < 0.99 * np.tan(turn / 2.0) * (arms @ way)))
+        ahead = np.flatnonzero((off < near) & (off < 0.99 * functions.tan(turn / 2.0) * product(arms, way)))
         if len(ahead):
             found[k, 0] = 2.0 * outer[k] - shape[ahead[off[ahead].argmin()]]
     return found

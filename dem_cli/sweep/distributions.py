@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseError, CaseProblem, KeyPath
 
@@ -25,12 +26,12 @@ def _normal(mean: float, deviation: float, q: Fractions) -> np.ndarray:
 def _lognormal(median: float, deviation: float, q: Fractions) -> np.ndarray:
     from scipy.special import ndtri
 
-    return median * np.exp(deviation * ndtri(q))
+    return median * functions.exp(deviation * ndtri(q))
 
 
 QUANTILES: dict[str, Callable[[float, float, Fractions], np.ndarray]] = {  # quantile functions
     "uniform": lambda low, high, q: low + (high - low) * q,
-    "loguniform": lambda low, high, q: low * (high / low) ** q,
+    "loguniform": lambda low, high, q: low * functions.power(high / low, q),
     "integers": lambda first, last, q: np.minimum(first + np.floor((last - first + 1) * q), last).astype(np.int64),
     "normal": _normal,
     "lognormal": _lognormal,
@@ -53,7 +54,7 @@ def even(path: KeyPath, form: Mapping[str, Any]) -> list[float]:
         raise _wrong(path, f"log = {show(log)} is not allowed; must be true or false")
     if log and not (low > 0 and high > 0):
         raise _wrong(path, "even ratios (log = true) need positive ends")
-    values = np.geomspace(low, high, count) if log else np.linspace(low, high, count)
+    values = functions.geometric(low, high, count) if log else np.linspace(low, high, count)
     return [float(f"{value:.12g}") for value in values]  # 0.3, not 0.30000000000000004
 
 

@@ -6,6 +6,7 @@ from itertools import permutations
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.case.base import KeyProblem
 from dem_cli.structures.building.bed import Bed, Floors, Slab, crossings, cut_pockets, edge_line, in_wall
 from dem_cli.structures.building.bond import SHORTEST
@@ -21,7 +22,7 @@ def lay_beams(found: Floors, bed: Bed) -> None:
     """Beams square to the first wall, evenly spaced, each with a pocket at both ends."""
     floor, first = bed.floor, next(side for side in bed.room if side.wall == bed.building.number(bed.floor.on[0]))
     last = next(side for side in bed.room if side.wall == bed.building.number(bed.floor.on[1]))
-    if abs(float(first.along @ last.along)) < OPPOSITE:
+    if abs(float(product(first.along, last.along))) < OPPOSITE:
         message = (
             f"walls '{floor.on[0]}' and '{floor.on[1]}' stand at an angle; beams go from a wall to one opposite it"
         )
@@ -55,7 +56,7 @@ def _advice(bed: Bed, sides: tuple[RoomSide, RoomSide]) -> str:
     """Two walls of the room between which all beams are clear, in words."""
     first, last = sides
     for one, other in ((last, first), *permutations([side for side in bed.room if side.wall is not None], 2)):
-        if abs(float(one.along @ other.along)) >= OPPOSITE and _are_clear(bed, (one, other)):
+        if abs(float(product(one.along, other.along))) >= OPPOSITE and _are_clear(bed, (one, other)):
             names = (bed.plan.axes[bed.wall(side)].name for side in (one, other))
             return "they are clear with on = ['{}', '{}'], square to the first of them".format(*names)
     return "no two walls of this room have beams square to one of them: give a plate, kind = 'rigid'"
@@ -76,14 +77,14 @@ def _clear_length(bed: Bed, side: RoomSide) -> tuple[float, float]:
     """From where to where along a side of a room its inner face goes [m]."""
     inner = crossings([edge_line(bed._replace(bearing={}), each, 0.0) for each in bed.room])
     k = next(i for i, each in enumerate(bed.room) if each is side)
-    begin, end = ((inner[j % len(inner)] - side.start) @ side.along for j in (k, k + 1))
+    begin, end = (product(inner[j % len(inner)] - side.start, side.along) for j in (k, k + 1))
     return float(begin), float(end)
 
 
 def _beam(bed: Bed, first: RoomSide, last: RoomSide, middle: float) -> np.ndarray:
     """Outline of a beam whose middle line leaves the first wall at a place along it [m], (4, 2)."""
     half = 0.5 * bed.floor.width
-    at = float(first.along @ first.start) + middle
+    at = float(product(first.along, first.start)) + middle
     sides = [(first.along, at - half), edge_line(bed, first, 0.0), (first.along, at + half), edge_line(bed, last, 0.0)]
     return crossings(sides)
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.case.base import KeyProblem
 from dem_cli.geometry.rotation import cross
 from dem_cli.structures.building.elevation import SMALL, Pocket
@@ -83,13 +84,13 @@ def edge_line(bed: Bed, side: RoomSide, gap: float) -> tuple[np.ndarray, float]:
     if side.wall is not None:
         inner = 0.5 * bed.plan.axes[side.wall].thickness
         away = inner - bed.bearing[side.wall] if side.wall in bed.bearing else inner + gap
-    return side.inwards, float(side.inwards @ side.start) + away
+    return side.inwards, float(product(side.inwards, side.start)) + away
 
 
 def in_wall(bed: Bed, side: RoomSide, ends: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Corners of what lies in a wall, (4, 2): ends there, and where edges to the others leave it."""
     ways = others - ends
-    depths = bed.bearing[bed.wall(side)] / (ways @ side.inwards)
+    depths = bed.bearing[bed.wall(side)] / product(ways, side.inwards)
     return np.concatenate([ends, ends + ways * np.minimum(depths, 1.0)[:, None]])
 
 
@@ -99,7 +100,7 @@ def cut_pockets(found: Floors, bed: Bed, side: RoomSide, outline: np.ndarray) ->
     axis = bed.plan.axes[wall]
     right, left = axis.faces.tolist()
     bearing = bed.bearing[wall]
-    inside = side.along @ axis.along > 0.0  # the room lies to the left of the wall
+    inside = product(side.along, axis.along) > 0.0  # the room lies to the left of the wall
     across = (right, left - bearing) if inside else (right + bearing, left)
     if across[1] - across[0] <= SMALL * axis.thickness:
         across = (0.0, 0.0)

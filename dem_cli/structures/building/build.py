@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from dem_cli.arithmetic.products import norm, product
 from dem_cli.case.base import KeyProblem
 from dem_cli.geometry import polyhedron
 from dem_cli.geometry.halfspaces import behind_all
@@ -180,8 +181,8 @@ def _planes(elevation: WallElevation, course: int, part: Part) -> Planes:
         if not inside:
             right, left = elevation.across
             normal = sign * np.array([left - right, line[0] - line[1], 0.0])
-            normal /= np.linalg.norm(normal)
-            found.append((normal, float(normal @ [line[0], right, 0.0])))
+            normal /= norm(normal)
+            found.append((normal, float(product(normal, [line[0], right, 0.0]))))
     return found
 
 
@@ -245,7 +246,7 @@ def _footprint(elevation: WallElevation, beyond: float) -> np.ndarray:
             [low - beyond, left + beyond],
         ]
     )
-    return axis.start + local @ np.stack([axis.along, axis.across])
+    return axis.start + product(local, np.stack([axis.along, axis.across]))
 
 
 def _welded(blocks: Sequence[Block]) -> list[Block]:

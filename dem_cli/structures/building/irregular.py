@@ -13,6 +13,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.case.base import KeyProblem
 from dem_cli.geometry import polygon
 from dem_cli.structures import tops
@@ -53,7 +54,7 @@ def zones_of(building: Building, plan: Plan, wall: WallCourses) -> list[Zone]:
         mine = junction.of(wall.number)
         other = junction.walls[1 - mine]
         count = building.walls[other].courses or building.courses
-        askew = abs(float(plan.axes[wall.number].along @ plan.axes[other].along))
+        askew = abs(float(product(plan.axes[wall.number].along, plan.axes[other].along)))
         if wall.table.gable is not None and count > own:
             message = f"wall '{building.walls[other].id}' meets it above its courses: with a pattern only below"
             raise KeyProblem(message, *key)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.case.base import KeyProblem
 from dem_cli.structures.building.table import Building
 
@@ -38,13 +39,13 @@ class PlanAxis(NamedTuple):
 
     def local(self, points: np.ndarray) -> np.ndarray:
         """Points of the plan in its own coordinates, (n, 2)."""
-        return (points - self.start) @ np.column_stack([self.along, self.across])
+        return product(points - self.start, np.column_stack([self.along, self.across]))
 
     def corners(self) -> np.ndarray:
         """Of its footprint, from end to end of the axis, counter-clockwise, (4, 2)."""
         low, high = self.faces
         local = np.array([[0.0, low], [self.length, low], [self.length, high], [0.0, high]])
-        return self.start + local @ np.stack([self.along, self.across])
+        return self.start + product(local, np.stack([self.along, self.across]))
 
 
 class Junction(NamedTuple):
@@ -69,13 +70,13 @@ class Plan(NamedTuple):
     def face(self, wall: int, other: int, side: int) -> np.ndarray:
         """Where a face of another wall (side: -1 right of it, 1 left) cuts both faces of this one [m], (2,)."""
         here, there = self.axes[wall], self.axes[other]
-        away = float((here.start - there.start) @ there.across)
-        sine, cosine = float(here.along @ there.across), float(here.across @ there.across)
+        away = float(product(here.start - there.start, there.across))
+        sine, cosine = float(product(here.along, there.across)), float(product(here.across, there.across))
         return (side * 0.5 * there.thickness - away - cosine * here.faces) / sine
 
     def towards(self, wall: int, other: int, arm: int) -> int:
         """On which side of another wall (-1 right, 1 left) an arm of this one lies: arm 1 goes on along the axis."""
-        return arm * int(math.copysign(1.0, float(self.axes[wall].along @ self.axes[other].across)))
+        return arm * int(math.copysign(1.0, float(product(self.axes[wall].along, self.axes[other].across))))
 
     def near(self, wall: int, other: int, arm: int) -> np.ndarray:
         """The face of another wall that an arm of this one reaches first, as `face`."""
@@ -123,10 +124,10 @@ def _direction(axis: Sequence[Sequence[float]]) -> tuple[np.ndarray, float]:
 def _meeting(axes: Sequence[PlanAxis], i: int, j: int, reach: float) -> Junction | None:
     """Where two axes cross, or one comes as near as the thickness of the other; None: they do not meet."""
     a, b = axes[i], axes[j]
-    sine = float(a.along @ b.across)
+    sine = float(product(a.along, b.across))
     if abs(sine) < math.sin(math.radians(SHARPEST)) * (1.0 - SAME):
         return None
-    at = (float((b.start - a.start) @ b.across) / sine, float((a.start - b.start) @ a.across) / -sine)
+    at = (float(product(b.start - a.start, b.across)) / sine, float(product(a.start - b.start, a.across)) / -sine)
     ends = []
     for place, axis, other in ((at[0], a, b), (at[1], b, a)):
         around = 0.5 * other.thickness / abs(sine) + reach
@@ -149,12 +150,12 @@ def _apart(shape: np.ndarray, other: np.ndarray, reach: float) -> bool:
     """Whether a side of a convex shape (n, 2), counter-clockwise, has all of another one beyond it."""
     sides = np.roll(shape, -1, axis=0) - shape
     outwards = np.column_stack([sides[:, 1], -sides[:, 0]]) / np.hypot(*sides.T)[:, None]
-    heights = (other @ outwards.T).min(axis=0) - (outwards * shape).sum(axis=1)
+    heights = product(other, outwards.T).min(axis=0) - (outwards * shape).sum(axis=1)
     return bool((heights >= -reach).any())
 
 
 def _beside(one: PlanAxis, other: PlanAxis) -> str:
-    sine = abs(float(one.along @ other.across))
+    sine = abs(float(product(one.along, other.across)))
     if sine < math.sin(math.radians(SHARPEST)):
         angle = math.degrees(math.asin(min(sine, 1.0)))
         return (

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.structures.building.plan import Plan
 
 
@@ -67,7 +68,7 @@ def between(plan: Plan, one: int, other: int) -> Room:
     a, b = plan.axes[one], plan.axes[other]
     ends = [np.stack([axis.start, axis.start + axis.length * axis.along]) for axis in (a, b)]
     first = ends[0] if a.local(ends[1].mean(axis=0)[None])[0, 1] > 0.0 else ends[0][::-1]
-    second = ends[1] if (ends[1][1] - ends[1][0]) @ (first[1] - first[0]) < 0.0 else ends[1][::-1]
+    second = ends[1] if product(ends[1][1] - ends[1][0], first[1] - first[0]) < 0.0 else ends[1][::-1]
     corners = np.concatenate([first, second])
     arms = np.roll(corners, -1, axis=0) - corners
     along = arms / np.hypot(*arms.T)[:, None]

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from pydantic import Field, model_validator
 
+from dem_cli.arithmetic import functions
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive
 from dem_cli.structures.patterns.cut import within
 from dem_cli.structures.patterns.panel import LEAST_SHARE, WallPanel, fitted
@@ -144,7 +145,7 @@ class _Courses:
             lengths.append(np.diff(places))
             slopes.append(leans)
         self.drawn["head_spacing"] = np.concatenate(lengths)
-        self.drawn["head_angle_deg"] = np.degrees(np.arctan(np.concatenate(slopes)))
+        self.drawn["head_angle_deg"] = np.degrees(functions.arctan(np.concatenate(slopes)))
 
     def _bed(self, k: int) -> list[tuple[float, float]]:
         """Kinks of an inner bed joint from left to right."""
@@ -160,7 +161,7 @@ class _Courses:
         middle = 0.5 * float(self.levels[k] + self.levels[k + 1])
         places = divided(self.length, self.pattern.head_spacing, self.draws)
         mean, deviation = self.pattern.head_angle_deg
-        slopes = np.tan(np.radians(self.draws.uniform(mean - deviation, mean + deviation, len(places) - 2)))
+        slopes = functions.tan(np.radians(self.draws.uniform(mean - deviation, mean + deviation, len(places) - 2)))
         below = [x for x, _ in self.beds[k][1:-1]]
         feet = []
         for i, slope in enumerate(slopes.tolist()):

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.geometry import polygon
 from dem_cli.geometry.decomposition import convex_parts
 from dem_cli.structures.patterns.tiling import SAME, Loop, Tiling, around, united, width
@@ -171,7 +172,7 @@ class _Cut:
         if not self.on_edge.get((i, j)):
             return []
         start, along = self.corners[i], self.corners[j] - self.corners[i]
-        near = sorted(self.on_edge[i, j], key=lambda m: float((self.corners[m] - start) @ along))
+        near = sorted(self.on_edge[i, j], key=lambda m: float(product(self.corners[m] - start, along)))
         chain, found = [i, *near, j], []
         for a, b in zip(chain[:-1], chain[1:], strict=True):
             inner = self._all_between(min(a, b), max(a, b))

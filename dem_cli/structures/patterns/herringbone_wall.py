@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from dem_cli.arithmetic.products import product
 from dem_cli.case.base import KeyProblem, Positive
 from dem_cli.model.blocks import Block
 from dem_cli.structures.patterns.cut import within
@@ -84,7 +85,7 @@ def _interlocked(wall: HerringboneWall, length: float, height: float) -> Tiling:
             cells = [(i + k, j) for k in range(wide)] + [(i + wide, j + k) for k in range(high)]
             cells += [(i + wide - k, j + high) for k in range(wide)] + [(i, j + high - k) for k in range(high)]
             stones.append(tuple(numbers.setdefault(cell, len(numbers)) for cell in cells))
-    corners = np.array(list(numbers)) @ np.array([along, up])
+    corners = product(np.array(list(numbers)), np.array([along, up]))
     return Tiling(corners, stones, [0] * len(stones))
 
 

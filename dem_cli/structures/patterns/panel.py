@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
 from dem_cli.structures.patterns.cut import without_holes
@@ -84,5 +85,5 @@ def _middle(parts: Sequence[np.ndarray]) -> np.ndarray:
     """Centroid of the area of some parts [m], (2,)."""
     all_of_it = [polygon.properties(part) for part in parts]
     areas = np.array([float(each.area) for each in all_of_it])
-    middle: np.ndarray = areas @ np.array([each.centroid for each in all_of_it]) / areas.sum()
+    middle: np.ndarray = product(areas, np.array([each.centroid for each in all_of_it])) / areas.sum()
     return middle

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.geometry import polygon
 from dem_cli.geometry.decomposition import is_simple
 from dem_cli.structures.patterns.tiling import SAME, Loop, Tiling, around
@@ -75,7 +76,7 @@ def _drawn_onto_side(places: np.ndarray, start: np.ndarray, end: np.ndarray, rea
     """Points near a side moved onto it, those near one of its ends to that end."""
     along, arms = end - start, places - start
     length = float(np.hypot(*along))
-    share = np.clip((arms @ along) / length**2, 0.0, 1.0)
+    share = np.clip(product(arms, along) / length**2, 0.0, 1.0)
     share[share * length < reach] = 0.0
     share[(1.0 - share) * length < reach] = 1.0
     feet = np.where((share == 1.0)[:, None], end, start + share[:, None] * along)

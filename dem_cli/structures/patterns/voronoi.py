@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field, model_validator
 
+from dem_cli.arithmetic.products import product
 from dem_cli.case.base import CaseModel, KeyProblem, Positive
 from dem_cli.geometry import polygon
 from dem_cli.structures.patterns.panel import WallPanel, fitted
@@ -109,7 +110,7 @@ def _voronoi(outline: np.ndarray, seeds: np.ndarray) -> Tiling:
     images = []
     for start, end in zip(outline, np.roll(outline, -1, axis=0), strict=True):
         normal = np.array([end[1] - start[1], start[0] - end[0]]) / np.hypot(*(end - start))
-        images.append(seeds - 2.0 * ((seeds - start) @ normal)[:, None] * normal)
+        images.append(seeds - 2.0 * product(seeds - start, normal)[:, None] * normal)
     found = Voronoi(np.concatenate([seeds, *images]))
     loops = [np.array(found.regions[found.point_region[k]]) for k in range(len(seeds))]
     used = np.unique(np.concatenate(loops))

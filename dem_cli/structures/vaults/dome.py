@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
 from dem_cli.case.base import KeyProblem
 from dem_cli.geometry.frusta import frustum, skewed
 from dem_cli.geometry.polyhedron import Polyhedron
@@ -48,7 +49,7 @@ def parallels(vault: Vault) -> np.ndarray:
     courses, springing = _required(vault.courses), np.radians(vault.springing_deg)
     if vault.oculus_radius is not None:
         sine, key = vault.oculus_radius / (_required(vault.radius) - vault.thickness / 2.0), "oculus_radius"
-        top = np.arcsin(min(sine, 1.0))
+        top = functions.arcsin(min(sine, 1.0))
     elif vault.oculus_deg is not None:
         top, key = np.radians(vault.oculus_deg), "oculus_deg"
     else:  # a cap that reaches down by half a course

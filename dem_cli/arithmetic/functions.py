@@ -1,0 +1,47 @@
+"""Elementary functions of arrays by the C library, whatever NumPy has for a processor; and rounding to agreed digits.
+
+NumPy's sine, cosine, square root, square and hypot are the same on all processors and need no other.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+DIGITS = 9  # far more than an answer has, far fewer than round-off touches
+
+
+def _each(function: Callable[..., float], n_arguments: int = 1) -> Callable[..., Any]:
+    """The function of all numbers of arrays, or of a number."""
+    of_all = np.frompyfunc(function, n_arguments, 1)
+
+    def of(*values: Any) -> Any:
+        return np.asarray(of_all(*values), float)[()]
+
+    return of
+
+
+arccos, arcsin, arctan, tan = (_each(function) for function in (math.acos, math.asin, math.atan, math.tan))
+exp, expm1, log, log10 = (_each(function) for function in (math.exp, math.expm1, math.log, math.log10))
+arctan2, power = _each(math.atan2, 2), _each(math.pow, 2)
+
+
+def geometric(low: float, high: float, count: int) -> np.ndarray:
+    """Numbers from low to high, each so many times the last; the ends are exact, (count,)."""
+    found = low * power(high / low, np.linspace(0.0, 1.0, count))
+    found[-1:] = high
+    found[:1] = low
+    return found
+
+
+def agreed(values: Any, digits: int = DIGITS) -> Any:
+    """Numbers rounded to so many significant digits: one number for all processors of what comes out of LAPACK.
+
+    Two results that are 1e-15 apart, in parts of themselves, still round to different numbers once in a million times.
+    """
+    if np.ndim(values) == 0:
+        return float(f"{float(values):.{digits - 1}e}")
+    return np.array([agreed(value, digits) for value in np.ravel(values)], float).reshape(np.shape(values))
