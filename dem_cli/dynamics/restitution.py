@@ -11,7 +11,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from dem_cli.dynamics.frequencies import principal_directions
 from dem_cli.engine.settings import DEFAULT, Settings
@@ -125,6 +124,8 @@ def fraction_of(
             f"{highest:.4f} (Housner: {rigid:.4f}); or name another block (damping.block)"
         )
         raise CaseError([CaseProblem(("damping", "restitution"), message)])
+
+    from scipy.optimize import brentq  # 0.2 s
 
     def error(logarithm: float) -> float:
         return rocked(case, model, reference, float(np.exp(logarithm)), settings) - wanted
