@@ -33,7 +33,7 @@ from dem_cli.output.record import FALLS, MOVES, Observer, RunRow
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
-EARTHQUAKES = ("record", "artificial")  # kinds of [motion] that are one draw of many, and are made with scipy
+EARTHQUAKES = ("record", "artificial")  # kinds of [motion] that are one draw of many
 ONE_DRAW = (
     "the peaks are those of one record on one structure: rocking is ill-conditioned, and a change of 0.1 % may give "
     "others, or a collapse; repeats = 20 shows their spread, kind = 'fragility' that of many records"
@@ -47,8 +47,6 @@ def run(
 ) -> Outcome:
     """Outcome of a time history, and how sensitive it is. Raises SolverError where it blows up."""
     job = Job.start(case, model, observer, settings)
-    for module in ("scipy.signal", "scipy.interpolate") if any(m.kind in EARTHQUAKES for m in case.motion) else ():
-        job.clock.imported(module)
     motions = motions_of(case)
     ground = GroundMotion(motions, model)
     chosen = rocking_stiffness(case, model, settings)

@@ -11,7 +11,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from dem_cli.arithmetic import functions
 from dem_cli.arithmetic.products import product
@@ -127,6 +126,8 @@ def fraction_of(
             f"{highest:.4f} (Housner: {rigid:.4f}); or name another block (damping.block)"
         )
         raise CaseError([CaseProblem(("damping", "restitution"), message)])
+
+    from scipy.optimize import brentq  # 0.2 s
 
     def error(logarithm: float) -> float:
         return rocked(case, model, reference, float(functions.exp(logarithm)), settings) - wanted

@@ -2,7 +2,8 @@
 
 Even instants alone alias what moves faster, and miss every peak. A snapshot is due when so much time has passed that
 the ground would be lost, or when a block has moved by a part of its swings, or turned by much; beside these, a swing
-that goes farther than all before it leaves the frame of its turning point.
+that goes farther than all before it leaves the frame of its turning point. While no block moves visibly against the
+ground a few are enough.
 """
 
 from __future__ import annotations
@@ -29,21 +30,21 @@ class EvenTimes:
     def __init__(self, start: float, end: float, count: int):
         self.times, self.shown = np.linspace(start, end, max(count, 2)), 0 if start > 0.0 else 1
 
-    def due(self, time: float, _: float) -> bool:
+    def due(self, time: float, _since: float, _still: bool) -> bool:
         """Whether a snapshot was due up to now [s] since the last one."""
         before, self.shown = self.shown, max(self.shown, int((self.times <= time).sum()))
         return self.shown > before
 
 
 class Intervals:
-    """Snapshots no further apart than an interval [s], and one at the end."""
+    """Snapshots no further apart than an interval [s], or another one where all is still, and one at the end."""
 
-    def __init__(self, interval: float, end: float):
-        self.interval, self.end = interval, end
+    def __init__(self, interval: float, interval_still: float, end: float):
+        self.interval, self.interval_still, self.end = interval, max(interval, interval_still), end
 
-    def due(self, time: float, since: float) -> bool:
-        """Whether the last one is long ago [s], or this is the end."""
-        return since >= self.interval or time >= self.end
+    def due(self, time: float, since: float, still: bool) -> bool:
+        """Whether the last one is long ago [s], or this is the end; still: no block moved visibly since then."""
+        return since >= (self.interval_still if still else self.interval) or time >= self.end
 
 
 class Snapshots:
@@ -84,7 +85,7 @@ class Snapshots:
     def _until(self, end: float, left: float, per_second: float) -> EvenTimes | Intervals:
         """What is due until an end that is so far off [s]."""
         if self.wanted is None:
-            return Intervals(max(1.0 / per_second, left / max(self.room, 1)), end)
+            return Intervals(max(1.0 / per_second, left / max(self.room, 1)), 1.0 / self.settings.per_second_still, end)
         return EvenTimes(end - left, end, self.wanted if self.stage == "shaking" else self.wanted // 2)
 
     def look(self) -> None:
@@ -94,7 +95,9 @@ class Snapshots:
         if self.track.frames == 0 or not math.isfinite(moved) or since == 0.0:
             return
         record, self.farthest = moved > self.farthest, max(moved, self.farthest)
-        if self.times.due(sim.time + 0.5 * sim.dt, since + 0.5 * sim.dt) or self._swung(places):
+        away = _largest(places - self.last)
+        still = away < self.settings.swing * self.visible
+        if self.times.due(sim.time + 0.5 * sim.dt, since + 0.5 * sim.dt, still) or self._swung(away):
             if self.ahead is not None and not record:
                 self._keep(self.ahead)
             self.ahead, self.last, self.last_turns, self.last_step = None, places, self._turns(), sim.steps
@@ -108,13 +111,16 @@ class Snapshots:
     def _turns(self) -> np.ndarray:
         return self.sim.bodies.orientations[self.sim.free]
 
-    def _swung(self, places: np.ndarray) -> bool:
-        """Whether a block moved or turned so far since the last snapshot that it would be lost between even times."""
+    def _swung(self, away: float) -> bool:
+        """Whether a block moved or turned so far since the last snapshot that it would be lost between even times.
+
+        away: how far one moved at most [m].
+        """
         if self.wanted is not None or self.room <= 0:
             return False
-        limit = self.settings.swing * max(self.farthest, self.visible)
-        turned = angles_between(self._turns(), self.last_turns).max(initial=0.0)
-        return _largest(places - self.last) > limit or turned > self.settings.turn
+        if away > self.settings.swing * max(self.farthest, self.visible):
+            return True
+        return angles_between(self._turns(), self.last_turns).max(initial=0.0) > self.settings.turn
 
     def _frame(self) -> Frame:
         self.sim.show_base(self.ground.along(self.sim.time), self.gravity)

@@ -102,6 +102,14 @@ def standing(program: Program, options: dict[str, Any]) -> ProgramSolution:
     return _solve(program, options, np.zeros((0, len(program.structure.free))))
 
 
+def factorised_by(program: Program) -> str:
+    """Which factorisation of Clarabel's is taken: by columns, the same on every processor, or the one for large programs.
+
+    The other, faer, multiplies in the order that suits a processor.
+    """
+    return "qdldl" if len(program.structure.free) <= program.settings.by_columns else "faer"
+
+
 def _solve(program: Program, options: dict[str, Any], live: np.ndarray) -> ProgramSolution:
     """The dual in Clarabel's form, min q·x, A x + s = b: x velocities, s = power of live loads, then s = G x ∈ K.
 
@@ -124,7 +132,7 @@ def _solve(program: Program, options: dict[str, Any], live: np.ndarray) -> Progr
              clarabel.NonnegativeConeT(a.shape[0] - len(live) - curved)]  # fmt: skip
     chosen = clarabel.DefaultSettings()
     chosen.verbose, chosen.max_threads = False, 1
-    chosen.direct_solve_method = "qdldl"  # the other way, faer, multiplies in the order that suits a processor
+    chosen.direct_solve_method = factorised_by(program)
     for name, value in ({"tol_feas": program.settings.feasible / spread} | options).items():
         setattr(chosen, name, value)
     answer = clarabel.DefaultSolver(csc_matrix((len(q), len(q))), q, a, b, cones, chosen).solve()

@@ -80,14 +80,21 @@ def _peaks(
 
 
 def pseudo_accelerations(accelerations: np.ndarray, filters: list[OscillatorFilter], omegas: np.ndarray) -> np.ndarray:
-    """PSA [m/s2] at the samples' own step, for loops that ask again and again, (..., n_periods)."""
-    from scipy.signal import lfilter
+    """PSA [m/s2] at the samples' own step, for loops that ask again and again, (..., n_periods).
 
-    moved = np.empty((*accelerations.shape[:-1], len(filters), accelerations.shape[-1]))
-    first = accelerations[..., :1]
-    for k, one in enumerate(filters):
-        moved[..., k, :], _ = lfilter(one.displacement, one.denominator, accelerations, zi=first * one.start[0])
-    return omegas**2 * peak(moved)
+    All filters go through the samples together; scipy.signal, for one after the other, takes half a second to load.
+    """
+    b0, b1, b2 = np.stack([one.displacement for one in filters], axis=1)
+    _, a1, a2 = np.stack([one.denominator for one in filters], axis=1)
+    starts = np.stack([one.start[0] for one in filters], axis=1)
+    samples = np.moveaxis(accelerations, -1, 0)[..., None]
+    moved = np.empty((len(samples), *accelerations.shape[:-1], len(filters)))
+    now, then = samples[0] * starts[0], samples[0] * starts[1]  # the transposed second direct form, as of lfilter
+    for sample, u in zip(samples, moved):
+        np.add(b0 * sample, now, out=u)
+        now = then + b1 * sample - a1 * u
+        then = b2 * sample - a2 * u
+    return omegas**2 * peak(np.moveaxis(moved, 0, -1))
 
 
 def oscillator(omega: float, damping: float, step: float) -> OscillatorFilter:

@@ -32,6 +32,7 @@ FRAME_SCALARS = ("step", "load", "displacement", "time")
 FRAME_ARRAYS = ("positions", "orientations", "velocities")
 _BUFFERED_ROWS = 4096
 _BUFFERED_SAMPLES = 1024
+_UNFLUSHED, _OF_A_STEP = 10_000_000, 15  # contact points × steps, some tenths of a second, and what a step counts beside
 _TEXT = h5py.string_dtype()
 JointsOf = Callable[[Model], FollowedJoints]
 
@@ -57,6 +58,7 @@ class ResultWriter:
         self.last_row: HistoryRow | None = None
         self.last_frame: Frame | None = None
         self.n_frames = 0
+        self._flushed_step = -_UNFLUSHED
         self._rows: list[HistoryRow] = []
         self._held = EquilibriumMonitors(self.monitors, self.quantities)
         self._files: list[Hdf5File] = []
@@ -86,9 +88,8 @@ class ResultWriter:
         return self._files[-1].hdf
 
     def frame(self, frame: Frame) -> None:
-        """Keep a snapshot; everything up to it is on disk when this returns."""
+        """Keep a snapshot; it goes to disk, with everything up to it, once some tenths of a second of work wait."""
         self._guarded(lambda: self._frame(frame))
-        self.last_frame = frame
 
     def row(self, row: HistoryRow) -> None:
         """Keep a row of the history; it goes to disk with the next frame."""
@@ -192,7 +193,10 @@ class ResultWriter:
                 self._joint_states.append(name, values[np.newaxis])
         self._vtk.add(float(frame.time if self.kind in IN_SECONDS else self.n_frames), frame, now)
         self.n_frames += 1
-        self._flush()
+        self.last_frame = frame
+        if abs(frame.step - self._flushed_step) * (len(frame.contacts.joint) + _OF_A_STEP) >= _UNFLUSHED:
+            self._flushed_step = frame.step
+            self._flush()
 
     def _begin_frames(self, links: LinkRecord | None) -> None:
         """The files for ParaView, and what does not change of joints and links."""

@@ -6,6 +6,7 @@ Errors are those of the solver, 1e-6 at most: nothing is approximated.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -22,6 +23,8 @@ from dem_cli.limit.analysis import start_structure
 from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load
 from dem_cli.limit.cone import envelope_of
 from dem_cli.limit.matrices import Structure, structure_of
+from dem_cli.limit.program import factorised_by, program_of
+from dem_cli.limit.settings import DEFAULT_LIMIT
 
 NEAR = 1e-6  # relative
 WIDTH, DEPTH, HEIGHT = 0.3, 0.5, 1.0  # of a block that topples; of weight one
@@ -261,3 +264,13 @@ def test_a_flat_twin_on_a_base_slides_either_way():
     vars(across)["shapes"] = model.shapes
     for each in (model, across):
         assert load(structure_of(each, joints), 0.4) == pytest.approx(0.4, rel=NEAR)
+
+
+def test_size_chooses_the_factorisation_and_either_finds_the_same_load():
+    made = structure(*panel(4, 3, (0.5, 0.4, 0.3)), horizontal(35.0))
+    strength, size, found = frictional(np.full(len(made.joints.kn), 0.6)), len(made.free), {}
+    for by_columns in (size - 1, size):
+        settings = replace(DEFAULT_LIMIT.associated, by_columns=by_columns)
+        found[factorised_by(program_of(made, strength, settings))] = limit_load(made, strength, settings).multiplier
+    assert sorted(found) == ["faer", "qdldl"]
+    assert found["faer"] == pytest.approx(found["qdldl"], rel=1e-8)
