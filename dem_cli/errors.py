@@ -3,7 +3,8 @@
 DemError
 ├── CaseError        exit 2   the case file or an override is wrong (all problems at once)
 ├── UsageError       exit 2   arguments, a missing or unreadable file, an output folder that is not ours
-│   └── MissingExtra          an optional part of dem that is not installed
+│   ├── MissingExtra          an optional part of dem that is not installed
+│   └── DamagedResults        results that are read back are not what a run writes
 ├── SolverError      exit 3   the solver gave up; what it has is kept
 └── OutputError      exit 3   results could not be written (full disk, no permission)
 
@@ -87,6 +88,22 @@ class MissingExtra(UsageError):
 
     def __init__(self, need: str, extra: str, note: str = ""):
         super().__init__(f"{need}: {install_command(extra)}{note}")
+
+    def __reduce__(self) -> tuple[Callable[..., UsageError], tuple[str]]:
+        """With its text, so that it may come from another process."""
+        return UsageError, (str(self),)
+
+
+class DamagedResults(UsageError):
+    """Results that are read back are not what a run writes: `NAME is missing`, or is not what it must be.
+
+    damage: which part of them is what; folder: where they lie, named once that is known.
+    """
+
+    def __init__(self, damage: str, folder: object = None):
+        self.damage = damage
+        place = "" if folder is None else f"{folder}: "
+        super().__init__(f"{place}these results are damaged: {damage}")
 
     def __reduce__(self) -> tuple[Callable[..., UsageError], tuple[str]]:
         """With its text, so that it may come from another process."""

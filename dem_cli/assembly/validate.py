@@ -230,7 +230,7 @@ def _kinks(model: Model) -> list[str]:
 
 
 def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
-    """Parts without area or not convex."""
+    """Parts without area or not convex, and blocks without a mass that can be computed with."""
     least = polygon.ROUND_OFF * functions.power(model.parts.sizes, model.dimension)
     flat = model.parts.volumes <= least
     shapes = shapes_of(model.vertices)
@@ -239,6 +239,13 @@ def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     for wrong, what in ((flat, NO_SIZE[model.dimension]), (bent, "is not convex")):
         hit = sorted(set(model.part_blocks[wrong].tolist()))
         found += _first_few([(blocks[i].path, f"block '{blocks[i].id}' {what}") for i in hit])
+    inertias = model.inertias.min(axis=1)
+    weightless = ~(np.isfinite(model.masses + model.inertias.max(axis=1)) & (np.minimum(model.masses, inertias) > 0.0))
+    if not found:
+        for i in np.flatnonzero(weightless):
+            message = f"block '{blocks[i].id}' has a mass of {model.masses[i]:g} kg, with which nothing can be computed"
+            found.append(CaseProblem(blocks[i].path, f"{message}; its density or its size is far from any stone"))
+            break
     return found
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import webbrowser
 from pathlib import Path
 from typing import Any
@@ -26,6 +25,7 @@ def command(folder: Path, output: Path | None, show: bool) -> None:
     tables, the case.
     """
     from dem_cli.output.atomic_file import write_text
+    from dem_cli.output.reader import read_summary
     from dem_cli.post.sweep_table import is_sweep
     from dem_cli.report import run, sweep
 
@@ -37,7 +37,7 @@ def command(folder: Path, output: Path | None, show: bool) -> None:
     if is_sweep(folder):
         text = sweep.page(folder, target.parent)
     else:
-        summary = _summary(folder)
+        summary = read_summary(folder)
         text = run.page(folder, summary, said(summary))
     write_text(target, text)
     console.show(f"{target}  ({len(text.encode()) / 1e6:.1f} MB)")
@@ -58,15 +58,3 @@ def said(summary: dict[str, Any]) -> Any:
     verdicts = [(tone, f"reference: {one_line(answer)}") for tone, answer in zip(tones, answers, strict=True)]
     return TerminalText(console.answer_rows(summary), verdicts)
 
-
-def _summary(folder: Path) -> dict[str, Any]:
-    from dem_cli.output.folder import SUMMARY
-
-    path = folder / SUMMARY
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        return {}
-    except (OSError, ValueError) as error:
-        raise UsageError(f"{path}: not valid JSON ({error})") from None
-    return found if isinstance(found, dict) else {}

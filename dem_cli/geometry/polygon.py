@@ -106,7 +106,7 @@ def compound(parts: AreaProperties, groups: np.ndarray, n_groups: int) -> AreaPr
 def is_convex(vertices: np.ndarray, tolerance: float = ROUND_OFF) -> bool:
     """True if the corners run counter-clockwise around a convex polygon; collinear corners are allowed."""
     vertices = np.asarray(vertices, float)
-    return bool(are_convex(vertices, np.array([0, len(vertices)]), tolerance)[0])
+    return len(vertices) >= 3 and bool(are_convex(vertices, np.array([0, len(vertices)]), tolerance)[0])
 
 
 def are_convex(vertices: np.ndarray, starts: np.ndarray, tolerance: float = ROUND_OFF) -> np.ndarray:

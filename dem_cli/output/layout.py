@@ -1,7 +1,7 @@
-"""Layout of results.h5 and of the files for ParaView: meaning, units, axes and columns of every dataset and attribute.
+"""Layout of results.h5: meaning, units, axes, columns and kind of every dataset and attribute.
 
-Whoever writes a dataset takes its attributes from here and can write no other; docs/results.md is made of the same
-declarations (scripts/docs --write).
+Whoever writes a dataset takes its attributes from here and can write no other; whoever reads one is told where it is
+not what is said here (output/integrity/); docs/results.md is made of the same declarations (scripts/docs --write).
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ ROW_SCALARS = ("step", "load", "displacement", "unbalanced", "overlap", "time", 
 PURE, WORDS = "1", ""  # units of pure numbers, counts and numbers of things; of text
 PER_SECOND, PER_STEP = ("m/s", "rad/s"), ("m/step", "rad/step")  # of velocities: of centroids, of spins
 TEXT = h5py.string_dtype()
+NUMBERS, WHOLE, TRUTHS, NAMES = "numbers", "whole numbers", "true or false", "text"  # kinds of values
+ONE_MORE = " + 1"  # ends the label of an axis that has one more than what it counts: where each begins, and the end
 
 
 class Described(NamedTuple):
@@ -28,10 +30,17 @@ class Described(NamedTuple):
     columns: tuple[str, ...] = ()  # names along the last axis
     in_space: Described | None = None  # what it holds in 3D, where that is something else
     spatial: bool = False  # whether it is there in 3D alone
+    kind: str = NUMBERS
+    counts: str = ""  # what its whole numbers are numbers of, as an axis is labelled; "": of nothing that is there
+    least: int = 0  # the smallest of them
+    optional: bool = False  # only where a case asks for it, or since some version
 
     def of(self, dimension: int) -> Described:
         """What it holds in so many dimensions."""
-        return self.in_space if dimension == 3 and self.in_space is not None else self
+        if dimension != 3 or self.in_space is None:
+            return self
+        kept = {name: getattr(self, name) for name in ("kind", "counts", "least", "optional")}
+        return self.in_space._replace(**kept)
 
 
 class Group(NamedTuple):
@@ -40,6 +49,9 @@ class Group(NamedTuple):
     about: str
     datasets: Mapping[str, Described]
     attributes: Mapping[str, str] = {}  # "*": any other
+    several: frozenset[str] = frozenset()  # attributes that hold several words; others hold one, or a whole number
+    counted_by: str = ""  # the dataset that is written last and has a row for each that is whole; "": none
+    optional: bool = False  # only where a case asks for it
 
 
 def describe(dataset: h5py.Dataset, said: Described) -> None:
@@ -73,22 +85,25 @@ def _generalised(meaning: str, linear: str, angular: str, axes: tuple[str, ...])
 def _of_stress(meaning: str, axes: tuple[str, ...] = ("frame", "block", "component")) -> Described:
     """What has a component for each stress in a block."""
     space = Described(meaning, "Pa", axes, ("xx", "yy", "zz", "yz", "zx", "xy"))
-    return Described(meaning, "Pa", axes, ("xx", "yy", "xy"), space)
+    return Described(meaning, "Pa", axes, ("xx", "yy", "xy"), space, optional=True)
+
+
+_BENDING = tuple(f"bending {k}" for k in range(1, 7))
 
 
 def _of_modes(meaning: str, unit: str, axes: tuple[str, ...] = ("block", "mode")) -> Described:
     """What has a component for each mode by which blocks deform (model/uniform_strain.py)."""
     space = Described(meaning, unit, axes, ("even", "x - y", "x + y - 2 z", "yz", "zx", "xy"))
-    return Described(meaning, unit, axes, ("even", "x - y", "xy", *(f"bending {k}" for k in range(1, 7))), space)
+    return Described(meaning, unit, axes, ("even", "x - y", "xy", *_BENDING), space, optional=True)
 
 
 _COMPONENT, _COORDINATE = ("block", "component"), ("block", "coordinate")
 _INERTIA, _AXIS = "moment of inertia about the centroid", ("block", "axis")
 MODEL = {
-    "block_ids": Described("name of each block", WORDS, _BLOCK),
-    "material_names": Described("name of each material", WORDS, ("material",)),
-    "block_material": Described("material of each block, by its number", PURE, _BLOCK),
-    "fixed": Described("whether the block cannot move", PURE, _BLOCK),
+    "block_ids": Described("name of each block", WORDS, _BLOCK, kind=NAMES),
+    "material_names": Described("name of each material", WORDS, ("material",), kind=NAMES),
+    "block_material": Described("material of each block, by its number", PURE, _BLOCK, kind=WHOLE, counts="material"),
+    "fixed": Described("whether the block cannot move", PURE, _BLOCK, kind=TRUTHS),
     "thickness": Described(
         "depth out of plane", "m", _BLOCK, (), Described("1: the corners say how deep a block is", PURE, _BLOCK)
     ),
@@ -97,31 +112,44 @@ MODEL = {
         _INERTIA, "kg m2", _AXIS, ("z",), Described(f"principal {_INERTIA}", "kg m2", _AXIS, ("1", "2", "3"))
     ),
     "centroids": _vector("centroid where the structure was drawn", "m", _COORDINATE),
-    "part_blocks": Described("block that each convex part belongs to, by its number", PURE, ("part",)),
+    "part_blocks": Described(
+        "block that each convex part belongs to, by its number", PURE, ("part",), kind=WHOLE, counts="block"
+    ),
     "part_starts": Described(
         "first corner of each convex part; they are counter-clockwise, and the last number is their count",
         PURE,
         ("part + 1",),
         (),
         Described("first corner of each convex part; the last number is their count", PURE, ("part + 1",)),
+        kind=WHOLE,
+        counts="corner",
     ),
     "vertices": _vector("corner from the centroid of its block, undeformed", "m", ("corner", "coordinate")),
     "dead_loads": _generalised("weight and dead point loads about the centroid", "N", "N m", _COMPONENT),
     "live_loads": _generalised("loads that the multiplier acts on, about the centroid", "N", "N m", _COMPONENT),
     "part_faces": Described(
-        "first face of each convex part; the last number is their count", PURE, ("part + 1",), spatial=True
+        "first face of each convex part; the last number is their count",
+        PURE,
+        ("part + 1",),
+        spatial=True,
+        kind=WHOLE,
+        counts="face",
     ),
     "face_starts": Described(
         "where the corners of each face begin in face_corners; the last number is their count",
         PURE,
         ("face + 1",),
         spatial=True,
+        kind=WHOLE,
+        counts="corner of a face",
     ),
     "face_corners": Described(
         "corners around each face, by their numbers; counter-clockwise seen from outside",
         PURE,
         ("corner of a face",),
         spatial=True,
+        kind=WHOLE,
+        counts="corner",
     ),
     "principal_axes": Described(
         "unit quaternion, scalar first, that turns vectors from the principal axes of a block to those of the world",
@@ -132,12 +160,15 @@ MODEL = {
     ),
     "mode_stiffness": _of_modes("stiffness of each mode by which a block deforms; 0: a rigid block", "N/m"),
     "dead_mode_loads": _of_modes("what dead loads do to each mode by which a block deforms", "N"),
-    "imposed_strains": Described("strain in all directions that a block would have if nothing held it", PURE, _BLOCK),
+    "imposed_strains": Described(
+        "strain in all directions that a block would have if nothing held it", PURE, _BLOCK, optional=True
+    ),
     "mode_shapes": Described(
         "displacement by each quadratic mode, as coefficients of 1, x, y, x², x y, y² from the centroid; 2D, where "
         "blocks bend alone",
         "m, powers of it",
         ("block", "mode", "direction", "term"),
+        optional=True,
     ),
     "live_mode_loads": _of_modes("what loads that the multiplier acts on do to each mode", "N"),
     "pieces": Described(
@@ -146,6 +177,9 @@ MODEL = {
         PURE,
         _COMPONENT,
         ("stone", "joint"),
+        kind=WHOLE,
+        least=-1,
+        optional=True,
     ),
     "restrained": Described(
         "whether each motion of the block is held; where the case has restraints alone",
@@ -158,13 +192,15 @@ MODEL = {
             _COMPONENT,
             _MOVED_IN_SPACE,
         ),
+        kind=TRUTHS,
+        optional=True,
     ),
 }
-_TURNED = "angle that the block has turned by, counter-clockwise"
+TURNED = "angle that the block has turned by, counter-clockwise"
 FRAMES = {
     "positions": _vector("centroid", "m", ("frame", "block", "coordinate")),
     "orientations": Described(
-        _TURNED, "rad", ("frame", "block", "axis"), ("z",),
+        TURNED, "rad", ("frame", "block", "axis"), ("z",),
         Described(
             "unit quaternion, scalar first, of how the block has turned since it was drawn",
             PURE, ("frame", "block", "component"), _QUATERNION,
@@ -175,22 +211,29 @@ FRAMES = {
         ("frame", "block", "component"),
     ),
     "stresses": _of_stress("stress of each block, in its own axes, tension positive; where blocks deform alone"),
-    "step": Described("solver steps so far", PURE, ("frame",)),
+    "step": Described("solver steps so far", PURE, ("frame",), kind=WHOLE),
     "load": Described("load multiplier λ", PURE, ("frame",)),
     "displacement": Described("control displacement: the largest of any block since the start", "m", ("frame",)),
-    "time": Described("time since the start of a time history; 0 in other analyses", "s", ("frame",)),
-    "stage": Described("stage of the analysis: index into the attribute `stages` of /dem", PURE, ("frame",)),
+    "time": Described("time since the start of a time history; 0 in other analyses", "s", ("frame",), optional=True),
+    "stage": Described(
+        "stage of the analysis: index into the attribute `stages` of /dem", PURE, ("frame",), kind=WHOLE, counts="stage"
+    ),
     "n_contacts": Described(
-        "how many rows of /dem/contacts are of this frame; they follow each other", PURE, ("frame",)
+        "how many rows of /dem/contacts are of this frame; they follow each other", PURE, ("frame",), kind=WHOLE
     ),
 }  # fmt: skip
 PER_STEP_FRAMES = FRAMES | {
     "velocities": _generalised(FRAMES["velocities"].meaning, *PER_STEP, FRAMES["velocities"].axes)
 }
+_STATES = "0 open, 1 sticking, 2 sliding: index into the attribute `states` of /dem"
 _PLACE, _SHEAR = ("contact point", "coordinate"), ("contact point", "tangent")
 CONTACTS = {
-    "joint": Described("joint that owns the point; numbered anew whenever joints are found anew", PURE, _POINT),
-    "blocks": Described("the two blocks, by their numbers", PURE, ("contact point", "side"), ("a", "b")),
+    "joint": Described(
+        "joint that owns the point; numbered anew whenever joints are found anew", PURE, _POINT, kind=WHOLE
+    ),
+    "blocks": Described(
+        "the two blocks, by their numbers", PURE, ("contact point", "side"), ("a", "b"), kind=WHOLE, counts="block"
+    ),
     "points": Described(
         "where the force acts", "m", _PLACE, _XYZ[:2],
         Described("where the force acts; it goes along with block a", "m", _PLACE, _XYZ),
@@ -203,7 +246,7 @@ CONTACTS = {
     ),
     "gap": Described("distance of the faces, positive open", "m", _POINT),
     "slip": Described("length of the path of slip so far", "m", _POINT),
-    "state": Described("0 open, 1 sticking, 2 sliding: index into the attribute `states` of /dem", PURE, _POINT),
+    "state": Described(_STATES, PURE, _POINT, kind=WHOLE, counts="state"),
     "tangents": Described(
         "unit vector of the first tangent, square to the normal; the second one is normal × tangent",
         PURE, _PLACE, _XYZ, spatial=True,
@@ -211,7 +254,9 @@ CONTACTS = {
 }  # fmt: skip
 _END = ("joint", "end", "coordinate")
 JOINT_PLACES = {
-    "blocks": Described("the two blocks, by their numbers", PURE, ("joint", "side"), ("a", "b")),
+    "blocks": Described(
+        "the two blocks, by their numbers", PURE, ("joint", "side"), ("a", "b"), kind=WHOLE, counts="block"
+    ),
     "ends": Described(
         "where the joint begins and ends on block a, as drawn", "m", _END, _XYZ[:2],
         Described("the two corners of the joint on block a that are furthest apart, as drawn", "m", _END, _XYZ),
@@ -223,7 +268,8 @@ JOINT_PLACES = {
         Described("area of the overlap as drawn; of lone edges and corners what they stand for", "m2", _JOINT),
     ),
     "starts": Described(
-        "first corner of each joint; the last number is their count", PURE, ("joint + 1",), spatial=True
+        "first corner of each joint; the last number is their count", PURE, ("joint + 1",), spatial=True,
+        kind=WHOLE, counts="corner of a joint",
     ),
     "corners": Described(
         "corners around each joint on block a, as drawn, counter-clockwise seen from block b; two of an edge, one of a "
@@ -253,12 +299,17 @@ JOINT_STATES = {
         "how far the normal force acts from the middle, along the tangent; 0 without a force", "m", _STATE, (),
         Described("how far the normal force acts from the middle; 0 without a force", "m", _STATE),
     ),
-    "state": Described("0 open, 1 sticking, 2 sliding: index into the attribute `states` of /dem", PURE, _STATE),
+    "state": Described(_STATES, PURE, _STATE, kind=WHOLE, counts="state"),
 }  # fmt: skip
 _LINK_POINT = ("point of a link",)
 LINKS = {
-    "starts": Described("first point of each tie or bar; the last number is their count", PURE, ("link + 1",)),
-    "blocks": Described("block that takes each point along; −1: none", PURE, _LINK_POINT),
+    "starts": Described(
+        "first point of each tie or bar; the last number is their count", PURE, ("link + 1",), kind=WHOLE,
+        counts="point of a link",
+    ),
+    "blocks": Described(
+        "block that takes each point along; −1: none", PURE, _LINK_POINT, kind=WHOLE, counts="block", least=-1
+    ),
     "arms": _vector(
         "point from the centroid of its block, as drawn; of no block from the origin", "m",
         ("point of a link", "coordinate"),
@@ -267,22 +318,25 @@ LINKS = {
 }  # fmt: skip
 _ROW = ("row",)
 HISTORY = {
-    "step": Described("solver steps so far", PURE, _ROW),
+    "step": Described("solver steps so far", PURE, _ROW, kind=WHOLE),
     "load": Described("load multiplier λ", PURE, _ROW),
     "displacement": Described("control displacement: the largest of any block since the start", "m", _ROW),
     "unbalanced": Described("largest unbalanced force on a block over its own weight", PURE, _ROW),
     "overlap": Described("largest overlap of two blocks", "m", _ROW),
-    "time": Described("time since the start of a time history; 0 in other analyses", "s", _ROW),
+    "time": Described("time since the start of a time history; 0 in other analyses", "s", _ROW, optional=True),
     "live_displacement": Described(
         "displacement of the live load along itself since the structure rested under dead loads: of one force that of "
         "its point, of several the mean by their size, positive along them; 0 without a live load",
         "m",
         _ROW,
+        optional=True,
     ),
     "monitor_values": Described(
         "value of each [[monitor]]; `columns` names them, `units` has one for each", (), ("row", "monitor")
     ),
-    "stage": Described("stage of the analysis: index into the attribute `stages` of /dem", PURE, _ROW),
+    "stage": Described(
+        "stage of the analysis: index into the attribute `stages` of /dem", PURE, _ROW, kind=WHOLE, counts="stage"
+    ),
 }
 ENERGY = {
     "kinetic": Described("kinetic energy", "J", _ROW),
@@ -292,13 +346,14 @@ ENERGY = {
     "friction": Described("lost to friction and to damage of joints, since the start", "J", _ROW),
     "damping": Described("lost to local and numerical damping, since the start", "J", _ROW),
     "supports": Described("work done by supports that are moved, since the start", "J", _ROW),
-    "dashpots": Described("lost to viscous joints, since the start", "J", _ROW),
-    "mass_damping": Described("lost to damping by mass, since the start", "J", _ROW),
-    "maxwell": Described("lost to Maxwell elements of joints, since the start", "J", _ROW),
+    "dashpots": Described("lost to viscous joints, since the start", "J", _ROW, optional=True),
+    "mass_damping": Described("lost to damping by mass, since the start", "J", _ROW, optional=True),
+    "maxwell": Described("lost to Maxwell elements of joints, since the start", "J", _ROW, optional=True),
     "reweighting": Described(
         "gone with the areas of contact points that change where blocks move in 3D, net since the start; minus: made",
         "J",
         _ROW,
+        optional=True,
     ),
 }
 _SAMPLE = ("sample", "coordinate")
@@ -311,7 +366,7 @@ SERIES = {
     ),
     "time": Described("time since the start", "s", ("sample",)),
 }
-DEM = {"case": Described("the case as it was run, defaults filled in: TOML", WORDS)}
+DEM = {"case": Described("the case as it was run, defaults filled in: TOML", WORDS, kind=NAMES)}
 GROUPS = {  # of results.h5
     "/dem": Group(
         "everything, in double precision",
@@ -323,6 +378,7 @@ GROUPS = {  # of results.h5
             "stages": "names of the stages, in the order of their numbers",
             "states": "names of the states of a joint, in the order of their numbers",
         },
+        frozenset(("stages", "states")),
     ),
     "/dem/provenance": Group(
         "what it was computed with",
@@ -340,93 +396,40 @@ GROUPS = {  # of results.h5
         {"dimension": "2: x to the right, y upwards; 3: x and y horizontal, z upwards"},
     ),
     "/dem/frames": Group(
-        "snapshots: as many as `output.frames` asks for, or as the motion of a time history needs", FRAMES
+        "snapshots: as many as `output.frames` asks for, or as the motion of a time history needs",
+        FRAMES,
+        counted_by="n_contacts",
     ),
     "/dem/contacts": Group("contact points of all frames, one frame after the other", CONTACTS),
     "/dem/joints": Group(
         "joints as they were drawn, and the state of each at every frame; blocks that come to touch later have contact "
         "points, but no joint",
         JOINT_PLACES | JOINT_STATES,
+        optional=True,
     ),
     "/dem/links": Group(
         "ties and bars, where there are any: lines through points of blocks, and the forces in them at every frame",
         LINKS,
         {"names": "name of each tie and bar", "kinds": "table of the case that each was drawn in"},
+        frozenset(("names", "kinds")),
+        optional=True,
     ),
-    "/dem/history": Group("states that the solver reported", HISTORY, {"monitors": "names of the [[monitor]] tables"}),
-    "/dem/history/energy": Group("the energy ledger, a value per row of the history", ENERGY),
+    "/dem/history": Group(
+        "states that the solver reported",
+        HISTORY,
+        {"monitors": "names of the [[monitor]] tables"},
+        frozenset(("monitors",)),
+        counted_by="stage",
+    ),
+    "/dem/history/energy": Group("the energy ledger, a value per row of the history", ENERGY, optional=True),
     "/dem/series": Group(
         "of time histories: motion of the base and monitors at an even rate",
         SERIES,
         {"monitors": "names of the [[monitor]] tables", "quantities": "what each of them follows"},
+        frozenset(("monitors", "quantities")),
+        counted_by="time",
+        optional=True,
     ),
-}
-
-_MEAN_STRESS = "mean stress of the block by the forces at its contact points alone, tension positive, 0 if it is fixed"
-# Fields for ParaView, float32 or whole numbers.
-BLOCK_FIELDS = {
-    "PointData/displacement": Described("displacement of a corner since the start", "m"),
-    "PointData/velocity": Described("velocity of a corner: m/s in a time history, else per solver step", "m/s"),
-    "CellData/block_id": Described("number of the block"),
-    "CellData/material": Described("number of its material"),
-    "CellData/fixed": Described("1: the block cannot move"),
-    "CellData/rotation": Described(
-        _TURNED, "rad", in_space=Described("angle that the block has turned by, from 0 to π", "rad")
-    ),
-    "CellData/orientation": Described(
-        "unit quaternion w, x, y, z of how the block has turned since it was drawn", spatial=True
-    ),
-    "CellData/angular_velocity": Described(
-        "spin of the block along x, y, z: rad/s in a time history, else per solver step", "rad/s", spatial=True
-    ),
-    "CellData/mean_stress": Described(
-        f"{_MEAN_STRESS}: xx, yy, xy", "Pa", in_space=Described(f"{_MEAN_STRESS}: xx, yy, zz, yz, zx, xy", "Pa")
-    ),
-    "CellData/principal_stress": Described("principal values of mean_stress, largest tension first", "Pa"),
-    "CellData/stress": Described(
-        FRAMES["stresses"].meaning + ": xx, yy, xy", "Pa",
-        in_space=Described(FRAMES["stresses"].meaning + ": xx, yy, zz, yz, zx, xy", "Pa"),
-    ),
-}  # fmt: skip
-CONTACT_FIELDS = {
-    "PointData/joint": CONTACTS["joint"],
-    "PointData/block_a": Described("number of the first block"),
-    "PointData/block_b": Described("number of the second block"),
-    "PointData/normal": CONTACTS["normals"],
-    "PointData/force": Described("force on block b", "N"),
-    "PointData/normal_force": CONTACTS["normal_force"],
-    "PointData/shear_force": CONTACTS["shear_force"]._replace(
-        in_space=Described("size of the shear force", "N", _POINT)
-    ),
-    "PointData/gap": CONTACTS["gap"],
-    "PointData/slip": CONTACTS["slip"],
-    "PointData/state": Described("0 open, 1 sticking, 2 sliding"),
-}
-JOINT_FIELDS = {
-    "PointData/gap": Described("distance across the joint at this end, positive open", "m"),
-    "CellData/block_a": Described("number of the first block"),
-    "CellData/block_b": Described("number of the second block"),
-    "CellData/area": JOINT_PLACES["area"],
-    **{f"CellData/{name}": said for name, said in JOINT_STATES.items() if name != "state"},
-    "CellData/state": Described("0 open, 1 sticking, 2 sliding"),
-}
-LINK_FIELDS = {
-    "PointData/force": Described("axial force, tension positive", "N"),
-    "CellData/link": Described("number of the tie or bar, in the order of /dem/links"),
-    "CellData/largest_force": Described("largest axial force of it, tension positive", "N"),
-}
-STEP_FIELDS = {
-    "FieldData/load_multiplier": Described("load multiplier λ"),
-    "FieldData/control_displacement": Described("largest displacement of any block since the start", "m"),
-    "FieldData/stage": FRAMES["stage"],
-    "FieldData/step": Described("solver steps so far"),
-    "FieldData/time": Described("time since the start of a time history", "s"),
-}
-VTK_FILES = {  # what each shows, and its fields
-    "blocks.vtkhdf": ("blocks, as cells whose corners move", BLOCK_FIELDS),
-    "contacts.vtkhdf": ("contact points with their forces", CONTACT_FIELDS),
-    "joints.vtkhdf": ("joints as they were drawn, as lines that move with the blocks", JOINT_FIELDS),
-    "links.vtkhdf": ("ties and bars, where there are any, as lines that move with the blocks", LINK_FIELDS),
 }
 
 

@@ -1,4 +1,4 @@
-"""Reader of results: `read(folder)` gives back what a run left."""
+"""Reader of results: `read(folder)` gives back what a run left, or says what of it is missing or damaged."""
 
 from __future__ import annotations
 
@@ -12,15 +12,17 @@ from typing import Any, NamedTuple, TypeAlias, overload
 import h5py
 import numpy as np
 
-from dem_cli.errors import UsageError
+from dem_cli.errors import DamagedResults, UsageError
+from dem_cli.input_limits import SUMMARY_BYTES, UnreadableInput, read_bounded
 from dem_cli.model.model import Model
 from dem_cli.output.folder import SUMMARY
-from dem_cli.output.layout import FRAMES, RESULTS_FORMAT, ROW_SCALARS, declared, units_of
+from dem_cli.output.integrity.stored_arrays import LaterArray, StoredArrays, check_size
+from dem_cli.output.layout import FRAMES, MODEL, NAMES, RESULTS_FORMAT, ROW_SCALARS, declared, units_of
 from dem_cli.output.record import STAGES, ContactRecord, Energy, Frame, JointPlaces, JointStates, LinkPlaces, LinkRecord
 from dem_cli.output.series import HistorySeries, read_series
 from dem_cli.output.store import FRAME_ARRAYS, FRAME_SCALARS, RESULTS
 
-Stored: TypeAlias = "np.ndarray | Any"  # an array in memory, or an h5py.Dataset
+Stored: TypeAlias = "np.ndarray | LaterArray"  # an array in memory, or one that is read in parts
 
 LAZY = (*FRAME_ARRAYS, "stresses")  # of frames: read when they are asked for
 
@@ -108,7 +110,7 @@ class Frames(Sequence[Frame]):
 
 
 def read(folder: Path | str, *, lazy: bool = False) -> Results:
-    """The results in `folder`; UsageError where there are none.
+    """The results in `folder`; UsageError where there are none, DamagedResults where they are not what a run writes.
 
     lazy: frames are read when they are asked for, from a file that the caller closes by `Results.source`.
     """
@@ -117,83 +119,147 @@ def read(folder: Path | str, *, lazy: bool = False) -> Results:
         raise UsageError(f"{folder}: no such folder")
     if not (folder / RESULTS).is_file():
         raise UsageError(f"{folder}: holds no results of dem run (no {RESULTS})")
+    summary = read_summary(folder)
     try:
         with ExitStack() as stack:
             if not lazy:
-                file = stack.enter_context(h5py.File(folder / RESULTS, "r", locking=False))
-                return _read(file["dem"], read_summary(folder), lazy)
+                file = stack.enter_context(_opened(folder / RESULTS))
+                return _read(_arrays(file, folder), summary, None)
             stream = stack.enter_context((folder / RESULTS).open("rb"))  # others may open the path as they like
-            file = stack.enter_context(h5py.File(stream, "r"))
-            return replace(_read(file["dem"], read_summary(folder), lazy), source=stack.pop_all())
-    except (OSError, KeyError) as error:
-        raise UsageError(f"{folder / RESULTS}: not a readable result of dem run ({error})") from None
+            file = stack.enter_context(_opened(stream))
+            return replace(_read(_arrays(file, folder), summary, folder), source=stack.pop_all())
+    except DamagedResults as error:
+        raise DamagedResults(error.damage, folder) from None
+    except (OSError, RuntimeError) as error:  # of HDF5, on bytes that are not its own
+        raise DamagedResults(f"{RESULTS} cannot be read ({_reason(error)})", folder) from None
 
 
 def read_summary(folder: Path) -> dict[str, Any]:
-    """What summary.json says; {} where there is none. Raises UsageError."""
+    """What summary.json says; {} where there is none. Raises DamagedResults."""
     path = folder / SUMMARY
-    if not path.is_file():
+    if not path.exists():
         return {}
     try:
-        summary: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise UsageError(f"{path}: not valid JSON ({error})") from None
-    return summary
+        found = json.loads(read_bounded(path, SUMMARY_BYTES).decode("utf-8"), parse_constant=_no_number)
+    except UnreadableInput as error:
+        raise UsageError(f"{path}: {error}") from None
+    except (ValueError, RecursionError) as error:
+        raise DamagedResults(f"{SUMMARY} is not valid JSON ({_reason(error)})", folder) from None
+    from dem_cli.output.integrity.summary_keys import check_summary
+
+    try:
+        return check_summary(found)
+    except DamagedResults as error:
+        raise DamagedResults(error.damage, folder) from None
 
 
-def _read(dem: h5py.Group, summary: dict[str, Any], lazy: bool) -> Results:
-    if dem.attrs["format"] != RESULTS_FORMAT:
-        raise UsageError(f"results written in format {dem.attrs['format']}; this version of dem reads {RESULTS_FORMAT}")
+def _no_number(name: str) -> Any:
+    raise ValueError(f"{name} is no number of JSON")
+
+
+def _reason(error: Exception) -> str:
+    """The first line of what a library says, without its own punctuation."""
+    return (str(error).strip("'\"").splitlines() or [type(error).__name__])[0]
+
+
+def _opened(file: Path | Any) -> h5py.File:
+    """Raises DamagedResults where a file is not HDF5, or is not whole."""
+    try:
+        return h5py.File(file, "r", locking=False) if isinstance(file, Path) else h5py.File(file, "r")
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        raise DamagedResults(f"{RESULTS} is not a whole file of HDF5 ({_reason(error)})") from None
+
+
+def _arrays(file: h5py.File, folder: Path) -> StoredArrays:
+    """What a file holds. Raises DamagedResults, and UsageError where it is of another format."""
+    check_size(file, folder / RESULTS)
+    dem = file.get("dem")
+    found = dem.attrs.get("format") if isinstance(dem, h5py.Group) else None
+    if isinstance(found, (int, np.integer)) and found != RESULTS_FORMAT:
+        raise UsageError(f"{folder}: results written in format {found}; this version of dem reads {RESULTS_FORMAT}")
+    return StoredArrays(file)
+
+
+def _read(arrays: StoredArrays, summary: dict[str, Any], lazy: Path | None) -> Results:
+    """lazy: the folder of results whose frames are read later."""
+    dem = arrays.dem
     history = dem["history"]
     n_rows = len(history["stage"]) if "stage" in history else 0
-    columns = {name: history[name][:n_rows] for name in ROW_SCALARS if name in history}
-    columns["stage"] = np.array(STAGES)[history["stage"][:]] if n_rows else np.zeros(0, dtype=str)
-    energy = {name: history["energy"][name][:n_rows] for name in Energy._fields if name in history.get("energy", ())}
-    monitors = {
-        str(name): history["monitor_values"][:n_rows, i] if n_rows else np.zeros(0)
-        for i, name in enumerate(history.attrs["monitors"])
-    }
-    model = _read_model(dem["model"])
-    return Results(
+    columns = {name: arrays.array(f"/dem/history/{name}", n_rows) for name in ROW_SCALARS if name in history}
+    columns["stage"] = np.array(STAGES)[arrays.array("/dem/history/stage")] if n_rows else np.zeros(0, dtype=str)
+    ledger = history.get("energy", ())
+    energy = {name: arrays.array(f"/dem/history/energy/{name}", n_rows) for name in Energy._fields if name in ledger}
+    names = [str(name) for name in history.attrs["monitors"]]
+    values = arrays.array("/dem/history/monitor_values", n_rows) if n_rows and names else np.zeros((0, len(names)))
+    monitors = {name: values[:, i] for i, name in enumerate(names)}
+    model = _read_model(arrays)
+    found = Results(
         summary=summary,
         model=model,
-        frames=_read_frames(dem, lazy),
+        frames=_read_frames(arrays, lazy),
         history=columns,
         energy=energy,
         monitors=monitors,
-        case_text=dem["case"].asstr()[()],
+        case_text=str(arrays.text("/dem/case")),
         provenance={name: str(value) for name, value in dem["provenance"].attrs.items()},
         status=str(dem.attrs["status"]),
         kind=str(dem.attrs["kind"]),
         series=read_series(dem["series"], model.dimension) if "series" in dem else None,
-        joints=_read_joints(dem["joints"], lazy) if "joints" in dem else None,
+        joints=_read_joints(arrays, lazy is not None) if "joints" in dem else None,
     )
+    _check_agreement(found)
+    return found
 
 
-def _read_frames(dem: h5py.Group, lazy: bool) -> Frames:
-    group = dem["frames"]
+def _check_agreement(found: Results) -> None:
+    """Raises DamagedResults where summary.json is that of another run than the arrays."""
+    kind, modes = found.summary.get("kind", found.kind), found.summary.get("frequencies") or ()
+    if kind != found.kind:
+        raise DamagedResults(f"{SUMMARY} is of kind {kind!r}, {RESULTS} of kind {found.kind!r}")
+    if found.kind == "modes" and found.summary:
+        wrong = [frame.step for frame in found.frames if frame.stage == "mode" and not 1 <= frame.step <= len(modes)]
+        if wrong:
+            raise DamagedResults(f"{SUMMARY} has {len(modes)} frequencies, /dem/frames/step has mode {wrong[0]}")
+
+
+def _read_frames(arrays: StoredArrays, lazy: Path | None) -> Frames:
+    group = arrays.dem["frames"]
     if "n_contacts" not in group:
         return Frames({}, {})
     n_frames = len(group["n_contacts"])
     names = (*FRAME_SCALARS, *FRAME_ARRAYS, "stresses", "stage", "n_contacts")
-    held = {name: group[name] for name in names if name in group}
-    columns = {name: data if lazy and name in LAZY else data[:n_frames] for name, data in held.items()}
+
+    def held(path: str, later: bool, rows: int | None = None) -> Stored:
+        return LaterArray(arrays, path, lazy) if lazy is not None and later else arrays.array(path, rows)
+
+    columns = {name: held(f"/dem/frames/{name}", name in LAZY, n_frames) for name in names if name in group}
     columns.setdefault("time", np.zeros(n_frames))  # results of earlier versions
-    contacts, links = dem["contacts"], None
-    if "forces" in dem.get("links", ()):
-        held = dem["links"]
-        links = LinkRecord(LinkPlaces(*(held[name][:] for name in LinkPlaces._fields)), held["forces"][:])
-    return Frames(columns, {name: data if lazy else data[:] for name, data in contacts.items()}, links)
+    links = None
+    if "forces" in arrays.dem.get("links", ()):
+        places = LinkPlaces(*(arrays.array(f"/dem/links/{name}") for name in LinkPlaces._fields))
+        links = LinkRecord(places, arrays.array("/dem/links/forces"))
+    contacts = {name: held(f"/dem/contacts/{name}", True) for name in ContactRecord._fields if name in
+                arrays.dem["contacts"]}  # fmt: skip
+    return Frames(columns, contacts, links)
 
 
-def _read_joints(group: h5py.Group, lazy: bool) -> JointHistory:
-    states = [group[name] for name in JointStates._fields]
-    places = JointPlaces(**{name: group[name][:] for name in JointPlaces._fields if name in group})
-    return JointHistory(places, JointStates(*(states if lazy else [data[:] for data in states])))
+def _read_joints(arrays: StoredArrays, lazy: bool) -> JointHistory | None:
+    group = arrays.dem["joints"]
+    if "state" not in group:  # of a run that was killed before its first frame
+        return None
+    states = [
+        arrays.dataset(f"/dem/joints/{name}") if lazy else arrays.array(f"/dem/joints/{name}")
+        for name in JointStates._fields
+    ]
+    places = {name: arrays.array(f"/dem/joints/{name}") for name in JointPlaces._fields if name in group}
+    return JointHistory(JointPlaces(**places), JointStates(*states))
 
 
-def _read_model(group: h5py.Group) -> Model:
-    values: dict[str, Any] = {name: int(value) for name, value in group.attrs.items()}
-    for name, data in group.items():
-        values[name] = tuple(data.asstr()[:]) if data.dtype.kind == "O" else data[:]
+def _read_model(arrays: StoredArrays) -> Model:
+    group = arrays.dem["model"]
+    values: dict[str, Any] = {"dimension": arrays.dimension}
+    for name in group:
+        if name in MODEL:
+            found = arrays.array(f"/dem/model/{name}")
+            values[name] = tuple(found) if MODEL[name].kind == NAMES else found
     return Model(**values)

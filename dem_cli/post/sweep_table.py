@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from dem_cli.errors import UsageError
+from dem_cli.errors import DamagedResults, UsageError
+from dem_cli.input_limits import TABLE_BYTES, UnreadableInput, read_bounded
 from dem_cli.output.csv_cells import text_of
 from dem_cli.output.sweep_files import CSV, FACTS, IDENTITY_COLUMNS
 from dem_cli.post.labels import nearest, plain, unknown
@@ -82,24 +84,60 @@ def is_sweep(folder: Path) -> bool:
 
 
 def read_sweep(folder: Path) -> SweepTable:
-    """The table in a folder. Raises UsageError."""
+    """The table in a folder. Raises UsageError, and DamagedResults where it is not what a sweep writes."""
     try:
-        facts = json.loads((folder / FACTS).read_text(encoding="utf-8")) if (folder / FACTS).is_file() else {}
-        with (folder / CSV).open(encoding="utf-8", newline="") as file:
-            names, *rows = list(csv.reader(file)) or [[]]
-        names = list(map(text_of, names))
+        facts = read_facts(folder)
+        names, *rows = list(csv.reader(io.StringIO(_text(folder, CSV), newline=""))) or [[]]
     except FileNotFoundError:
         raise UsageError(f"{folder}: no sweep.csv yet; `dem sweep` writes it, the same command goes on") from None
-    except (OSError, ValueError) as error:
-        raise UsageError(f"{folder / CSV}: not a readable table of a sweep ({error})") from None
-    whole = all(len(row) == len(names) for row in rows)
-    columns = {name: [value(row[i]) for row in rows] for i, name in enumerate(names)} if whole else {}
-    if not rows or "run" not in columns or "status" not in columns:
-        raise UsageError(f"{folder / CSV}: not a table of a sweep, or one without runs")
+    except csv.Error as error:
+        raise DamagedResults(f"{CSV} is no table ({error})", folder) from None
+    names = list(map(text_of, names))
+    short = next((i for i, row in enumerate(rows, 2) if len(row) != len(names)), None)
+    if short is not None:
+        raise DamagedResults(f"{CSV}: row {short} has {len(rows[short - 2])} cells, not {len(names)}", folder)
+    for name in ("run", "status"):
+        if name not in names:
+            raise DamagedResults(f"{CSV}: the column '{name}' is missing", folder)
+    if not rows:
+        raise DamagedResults(f"{CSV} has no rows", folder)
+    columns = {name: [value(row[i]) for row in rows] for i, name in enumerate(names)}
     columns["run"] = [row[names.index("run")] for row in rows]  # 1e5 may be a name
+    if any(Path(run).name != run for run in columns["run"]):
+        raise DamagedResults(f"{CSV}: the column 'run' holds what is no name of a run", folder)
     keys = facts.get("keys") or names[names.index("run") + 1 : names.index("status")]
+    unknown_keys = [key for key in keys if key not in columns]
+    if unknown_keys:
+        raise DamagedResults(f"{CSV}: the column '{unknown_keys[0]}' is missing, which {FACTS} names", folder)
     return SweepTable(str(facts.get("title", "")), tuple(keys), columns, folder)
 
+
+def read_facts(folder: Path) -> dict[str, Any]:
+    """What sweep.json says; {} where there is none. Raises DamagedResults."""
+    if not (folder / FACTS).exists():
+        return {}
+    try:
+        facts = json.loads(_text(folder, FACTS))
+    except (ValueError, RecursionError) as error:
+        raise DamagedResults(f"{FACTS} is not valid JSON ({error})", folder) from None
+    if not isinstance(facts, dict):
+        raise DamagedResults(f"{FACTS} is not a table", folder)
+    keys = facts.get("keys") or []
+    if not isinstance(keys, list) or not all(isinstance(key, str) for key in keys):
+        raise DamagedResults(f"{FACTS}: keys is not a list of words", folder)
+    return facts
+
+
+def _text(folder: Path, name: str) -> str:
+    """Text of a file of a sweep. Raises DamagedResults, UsageError, and FileNotFoundError."""
+    try:
+        return read_bounded(folder / name, TABLE_BYTES).decode("utf-8")
+    except FileNotFoundError:
+        raise
+    except UnicodeDecodeError as error:
+        raise DamagedResults(f"{name} is not UTF-8 text (byte {error.start})", folder) from None
+    except (OSError, UnreadableInput) as error:
+        raise UsageError(f"{folder / name}: {getattr(error, 'strerror', None) or error}") from None
 
 def value(text: str) -> Any:
     """What a cell holds: a number, a truth, a word, or nothing."""

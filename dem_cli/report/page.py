@@ -14,6 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from dem_cli.input_limits import CASE_BYTES, UnreadableInput, read_bounded
 from dem_cli.output.scalars import plain
 
 ASSETS = Path(__file__).parent / "assets"
@@ -73,3 +74,11 @@ def _hash(text: str) -> str:
 def asset(name: str) -> str:
     """A file of this package."""
     return (ASSETS / name).read_text(encoding="utf-8")
+
+
+def case_text(path: Path) -> str:
+    """The case that results lie beside, as far as it can be read; "" where it is gone."""
+    try:
+        return read_bounded(path, CASE_BYTES).decode("utf-8", errors="replace")
+    except (OSError, UnreadableInput):
+        return ""

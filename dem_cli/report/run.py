@@ -14,7 +14,7 @@ from dem_cli.output.store import CASE, RESULTS
 from dem_cli.post.run_pictures import PICTURES, has_data
 from dem_cli.report.charts import charts
 from dem_cli.report.facts import KIND_TITLES, all_numbers, answer, audit, model_rows
-from dem_cli.report.page import render
+from dem_cli.report.page import case_text, render
 from dem_cli.report.view import view
 
 DRAWN_HERE = frozenset(("capacity.png", "histories.png", "energy.png", "fragility.png"))  # as charts, with more to see
@@ -33,7 +33,7 @@ def page(folder: Path, summary: Mapping[str, Any], said: TerminalText) -> str:
     results = read(folder) if (folder / RESULTS).is_file() else None
     if results is None and not summary:
         raise UsageError(f"{folder}: holds no results of dem run or dem sweep")
-    case = results.case_text if results else _text(folder / CASE)
+    case = results.case_text if results else case_text(folder / CASE)
     scene = view(results) if results else None
     drawn = charts(results, scene["frames"]) if results and scene else []
     return render(
@@ -74,9 +74,3 @@ def pictures(results: Results) -> list[dict[str, str]]:
             found.append({"source": f"data:image/png;base64,{data}", "alt": _ALT.get(name, Path(name).stem)})
     return found
 
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except OSError:
-        return ""

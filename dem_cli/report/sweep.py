@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections import Counter
 from pathlib import Path
-from typing import Any
 from urllib.parse import quote
 
 from dem_cli.errors import UsageError
 from dem_cli.output.store import CASE
-from dem_cli.output.sweep_files import FACTS, RUNS
-from dem_cli.post.sweep_table import ANSWER_COLUMNS, SweepTable, distinct, read_sweep, shown
+from dem_cli.output.sweep_files import RUNS
+from dem_cli.post.sweep_table import ANSWER_COLUMNS, SweepTable, distinct, read_facts, read_sweep, shown
 from dem_cli.report.facts import BAD, GOOD, LOOK, Headline
-from dem_cli.report.page import render
+from dem_cli.report.page import case_text, render
 
 OTHERS, MOST_LINES = "the other keys", 12  # of the chart at first
 MOST_VALUES = 12  # of a key that are listed
@@ -23,7 +21,7 @@ RUN_PAGES = ("report.html", "collapse.png", "render.png", "summary.json")  # wha
 
 def page(folder: Path, place: Path) -> str:
     """HTML of the sweep in `folder`, for a file in `place`. Raises UsageError where its table cannot be read."""
-    table, case = read_sweep(folder), folder / CASE
+    table = read_sweep(folder)
     runs = {
         "columns": list(table.columns),
         "rows": [list(row) for row in zip(*table.columns.values())],
@@ -47,9 +45,9 @@ def page(folder: Path, place: Path) -> str:
         scene=None,
         charts=[],
         pictures=[],
-        case=case.read_text(encoding="utf-8") if case.is_file() else "",
+        case=case_text(folder / CASE),
         provenance={},
-        version=_facts(folder / FACTS).get("version", "–"),
+        version=read_facts(folder).get("version", "–"),
         command="sweep",
         runs=runs,
     )
@@ -130,8 +128,3 @@ def links(table: SweepTable, place: Path) -> dict[str, str]:
             found[run] = quote(f"{base}/{run}/{name}")
     return found
 
-
-def _facts(path: Path) -> dict[str, Any]:
-    """What stands in sweep.json; `read_sweep` has complained already where it is none."""
-    found = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
-    return found if isinstance(found, dict) else {}

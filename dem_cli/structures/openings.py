@@ -105,6 +105,9 @@ class Opening(CaseModel):
             shapes = self.void.voussoirs
         except KeyProblem as problem:
             raise KeyProblem(str(problem), "arch", *problem.keys) from None
+        if any(len(shape) < 3 for shape in shapes):  # all digits go into how far away they are
+            message = f"{self.arch.ring:g} is not allowed; too thin to be told apart at y = {self.y + self.height:g}"
+            raise KeyProblem(message, "arch", "ring")
         if not all(polygon.is_convex(shape) for shape in shapes):
             raise KeyProblem("voussoirs are not convex; use more of them or a thinner ring", "arch", "voussoirs")
         return self

@@ -9,16 +9,16 @@ import h5py
 import numpy as np
 
 from dem_cli.model.model import Model
-from dem_cli.output.layout import (
+from dem_cli.output.layout import declared
+from dem_cli.output.paraview.cells import cells_of, lines, outlines_of_joints
+from dem_cli.output.paraview.described_fields import (
     BLOCK_FIELDS,
     CONTACT_FIELDS,
     JOINT_FIELDS,
     LINK_FIELDS,
     STEP_FIELDS,
     VTK_FILES,
-    declared,
 )
-from dem_cli.output.paraview.cells import cells_of, lines, outlines_of_joints
 from dem_cli.output.paraview.fields import (
     block_fields,
     contact_fields,
