@@ -28,6 +28,8 @@ from dem_cli.contact.compatibility import compatibility
 from dem_cli.engine.placement import moves
 
 if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
     from dem_cli.engine.simulation import Simulation
 
 
@@ -61,9 +63,8 @@ def take_back(sim: Simulation, points: np.ndarray) -> None:
 
     Forces stay to the last digit: what cannot go back at one point without closing another one stays for now.
     """
-    closed = np.zeros(len(sim.joints.kn))
-    closed[points] = -sim.measured().gaps[points]
-    moves.shift(sim, _motion_that_opens(sim, closed))
+    before = sim.measured().gaps
+    moves.shift(sim, _motion_that_opens(sim, points, before))
     gaps = sim.measured().gaps
     closure = np.minimum(gaps, 0.0)  # of open points: they stay open
     closure[points] = gaps[points] + sim.contacts.normal[points] / sim.joints.kn[points]
@@ -72,21 +73,42 @@ def take_back(sim: Simulation, points: np.ndarray) -> None:
         sim.contacts.gaps[:] = gaps
 
 
-def _motion_that_opens(sim: Simulation, by: np.ndarray) -> np.ndarray:
-    """Displacements of all blocks that open the points that press by so much [m], (n_blocks, n_dof)."""
-    from scipy.sparse import diags
+def _motion_that_opens(sim: Simulation, points: np.ndarray, gaps: np.ndarray) -> np.ndarray:
+    """Displacements of all blocks that open the points that press by their overlap, (n_blocks, n_dof) [m, rad].
 
+    A block that stands on two points close to each other would turn until both are open, by as much as their distance
+    is small, and into its neighbours: points that would be pushed far into overlap are held where they just touch. Zero
+    where there is no end of them.
+    """
     d, joints, relief = sim.model.dimension, sim.joints, sim.settings.relief
+    motion = compatibility(sim.model, joints)
     stiffness = np.column_stack([joints.kn, *[relief.sliding * joints.ks] * (d - 1)])
     stiffness[sim.contacts.normal <= 0.0] = 0.0
     wanted = np.zeros_like(stiffness)
-    wanted[:, 0] = by
-    motion = compatibility(sim.model, joints)
+    wanted[points, 0] = -gaps[points]
+    room = np.where(sim.contacts.normal > 0.0, np.inf, gaps - sim.contacts.closure)  # until open points touch
+    most = relief.pushed * float(np.abs(wanted).max(initial=0.0))
+    for _ in range(relief.rounds):
+        found = _least_squares(motion, stiffness, wanted, relief.singular)
+        pushed = -(motion @ found).reshape(stiffness.shape)[:, 0] - room > most
+        if not pushed.any():
+            break
+        room = np.where(pushed, np.inf, room)
+        stiffness[pushed, 0], wanted[pushed, 0] = joints.kn[pushed], sim.contacts.closure[pushed] - gaps[pushed]
+    else:
+        found = np.zeros_like(found)
+    moved = np.zeros_like(sim.bodies.velocities)
+    columns = sim.model.rotations.stop
+    moved[sim.free, :columns] = found.reshape(-1, columns)
+    return moved
+
+
+def _least_squares(motion: csr_matrix, stiffness: np.ndarray, wanted: np.ndarray, singular: float) -> np.ndarray:
+    """Displacements u of least Σ stiffness (motion u − wanted)², (n_columns,); both (n_points, d)."""
+    from scipy.sparse import diags
+
     weighted = motion.T @ diags(stiffness.ravel())
     matrix = (weighted @ motion).tocsc()
     diagonal = matrix.diagonal()
-    matrix += diags(relief.singular * np.where(diagonal > 0.0, diagonal, diagonal.max(initial=0.0)))
-    moved = np.zeros_like(sim.bodies.velocities)
-    columns = sim.model.rotations.stop
-    moved[sim.free, :columns] = solved_symmetric(matrix, weighted @ wanted.ravel()).reshape(-1, columns)
-    return moved
+    matrix += diags(singular * np.where(diagonal > 0.0, diagonal, diagonal.max(initial=0.0)))
+    return solved_symmetric(matrix, weighted @ wanted.ravel())
