@@ -103,7 +103,7 @@ def standing(program: Program, options: dict[str, Any]) -> ProgramSolution:
 
 
 def factorised_by(program: Program) -> str:
-    """Which factorisation of Clarabel's is taken: by columns, the same on every processor, or the one for large programs.
+    """Which factorisation Clarabel takes: by columns, the same on every processor, or the one for large programs.
 
     The other, faer, multiplies in the order that suits a processor.
     """
