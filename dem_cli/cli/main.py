@@ -169,7 +169,7 @@ def quiet_pipe() -> int:
 @click.group("dem", cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="dem", message="%(prog)s %(version)s")
 def main() -> None:
-    """How much earthquake can a dry-stone wall, arch or column take?
+    """How much earthquake can a dry-stone wall, arch, vault or house take?
 
-    A TOML case file describes the structure; `dem run CASE.toml` pushes it until it fails.
+    A TOML case file describes the structure; `dem run CASE.toml` pushes it until it fails, or shakes it.
     """

@@ -12,9 +12,10 @@ class Recipe(NamedTuple):
     section: str  # its heading
     name: str  # of the example, as a case file has it
     files: Mapping[str, str]  # new ones, by their paths
-    lines: Mapping[str, tuple[str, str]]  # file -> a text that stands there once, and what it becomes
+    lines: Sequence[tuple[str, str, str]]  # file, a text that stands there once, and what it becomes
     commands: Sequence[tuple[str, ...]]  # as the recipe has them, in their order
     tests: Sequence[str]  # that ask of it, as pytest takes them
+    left_out: Sequence[str] = ()  # files of steps that begin with "if", and that the example does not need
 
     @property
     def module(self) -> str:

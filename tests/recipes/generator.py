@@ -107,13 +107,13 @@ RECIPE = Recipe(
         "dem_cli/cli/templates/stepped-pier.toml": TEMPLATE,
         "tests/unit/structures/test_stepped_pier.py": TEST,
     },
-    lines={
-        "dem_cli/structures/registry.py": ("    for generator in (\n", f"    for generator in (\n        {KIND}\n"),
-        "dem_cli/cli/new.py": ("KIND: arch, arched-wall,", "KIND: arch, arched-wall, stepped-pier,"),
-        "docs/guide/install.md": ("`wall-section`", "`stepped-pier`, `wall-section`"),
-        "dem_cli/assembly/imperfect.py": ('LEVEL = ("wall", "column")', 'LEVEL = ("wall", "column", "stepped-pier")'),
-        "docs/glossary.md": ("`arch`, `bridge`, `drums`", "`arch`, `stepped-pier`, `bridge`, `drums`"),
-    },
+    lines=(
+        ("dem_cli/structures/registry.py", "    for generator in (\n", f"    for generator in (\n        {KIND}\n"),
+        ("dem_cli/cli/new.py", "KIND: arch, arched-wall,", "KIND: arch, arched-wall, stepped-pier,"),
+        ("docs/guide/install.md", "`wall-section`", "`stepped-pier`, `wall-section`"),
+        ("dem_cli/assembly/imperfect.py", 'LEVEL = ("wall", "column")', 'LEVEL = ("wall", "column", "stepped-pier")'),
+        ("docs/glossary.md", "`arch`, `bridge`, `drums`", "`arch`, `stepped-pier`, `bridge`, `drums`"),
+    ),
     commands=(("scripts/draw_tree",), ("scripts/docs", "--write")),
     tests=(
         "tests/house/test_imports.py::test_only_the_arrows_of_the_house[structures.stepped_pier]",

@@ -99,21 +99,24 @@ RECIPE = Recipe(
         "tests/laws/test_tresca.py": TEST,
         "scripts/studies/laws/notes/tresca.md.j2": "τ = 50 kPa.\n\n## Notes\n\n* It has no friction.\n",
     },
-    lines={
-        "dem_cli/laws/registry.py": ("    {\n", '    {\n        "tresca": ("dem_cli.laws.tresca", "TRESCA"),\n'),
-        "tests/laws/test_loop.py": (
+    lines=(
+        ("dem_cli/laws/registry.py", "    {\n", '    {\n        "tresca": ("dem_cli.laws.tresca", "TRESCA"),\n'),
+        (
+            "tests/laws/test_loop.py",
             "JOINTS = {\n", 'JOINTS = {\n    "tresca": joint("tresca", shear_strength=16.0),\n'
         ),
-        "scripts/studies/laws/diagrams.py": (
+        (
+            "scripts/studies/laws/diagrams.py",
             "PAGES = (\n", PANELS + '    LawPage(LAWS["tresca"], {"shear_strength": 5e4}, 1e10, 4e9, tresca),\n'
         ),
-        "tests/laws/test_strength.py": ('{"barton", "elastic"}', '{"barton", "elastic", "tresca"}'),
-        "docs/guide/joints.md": (
+        ("tests/laws/test_strength.py", '{"barton", "elastic"}', '{"barton", "elastic", "tresca"}'),
+        (
+            "docs/guide/joints.md",
             "| not to fail at all |",
             "| held by one shear stress | [`tresca`](../laws/tresca.md) | shear strength |\n| not to fail at all |",
         ),
-        "docs/glossary.md": ("`elastic`. One file each.", "`elastic`, `tresca`. One file each."),
-    },
+        ("docs/glossary.md", "`elastic`. One file each.", "`elastic`, `tresca`. One file each."),
+    ),
     commands=(("scripts/study", "laws", "tresca", "--write"), ("scripts/draw_tree",), ("scripts/docs", "--write")),
     tests=(
         "tests/house/test_kernels_ast.py::test_compiled_functions_hold_numbers_alone[laws/tresca.py]",
