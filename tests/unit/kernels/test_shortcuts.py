@@ -13,7 +13,6 @@ from numba.core.registry import cpu_target
 
 from dem_cli.kernels.compilation import callees, shortcuts
 
-pytestmark = pytest.mark.skipif(not callees.KERNEL, reason="a numba that shortcuts were not tried with")
 NUMBERS = (types.int64, types.uint64, types.float64, types.boolean, types.literal(2), types.float64[:, ::1])
 
 
