@@ -58,7 +58,7 @@ PRIVATE_NAMES: dict[str, tuple[str, ...]] = {
     ),
     "numba.core.compiler": ("Compiler.define_pipelines(self)",),
     "numba.core.compiler_machinery": (
-        "FunctionPass.__init__(self, args, kwargs)", "FunctionPass.run_pass(self, args, kwargs)",
+        "FunctionPass.run_pass(self, args, kwargs)",
         "PassManager.add_pass_after(self, pass_cls, location)", "PassManager.finalize(self)", "PassManager: passes",
         "register_pass(mutates_CFG, analysis_only)",
     ),
@@ -73,9 +73,9 @@ PRIVATE_NAMES: dict[str, tuple[str, ...]] = {
         "PythonAPI.err_set_string(self, exctype, msg)", "PythonAPI.numba_array_adaptor(self, ary, ptr)",
         "PythonAPI.tuple_getitem(self, tup, idx)",
     ),
-    "numba.core.runtime.nrt": ("rtsys.initialize(ctx)",),
+    "numba.core.runtime.nrt": ("rtsys",),
     "numba.core.targetconfig": (
-        "ConfigStack.top_or_none()", "TargetConfig.__eq__(self, other)", "TargetConfig.__hash__(self)",
+        "ConfigStack.top_or_none()", "TargetConfig.__eq__(self, other)",
         "TargetConfig: _values",
     ),
     "numba.core.typed_passes": (
