@@ -23,7 +23,11 @@ from dem_cli.kernels.compilation.switch import SWITCH
 
 __all__ = ["PlainKernel", "PlainNumba"]
 
-_OPTIONS = {"error_model": "numpy", "fastmath": False, "nogil": True}  # IEEE division: same input, same bytes
+_OPTIONS: dict[str, Any] = {
+    "error_model": "numpy",
+    "fastmath": False,
+    "nogil": True,
+}  # IEEE division: same input, same bytes
 
 
 class PlainNumba:
