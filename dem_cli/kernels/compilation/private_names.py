@@ -42,9 +42,10 @@ PRIVATE_NAMES: dict[str, tuple[str, ...]] = {
         "CPUCallConv.get_function_type(self, restype, argtypes)",
     ),
     "numba.core.cgutils": (
-        "_StructProxy._getvalue(self)", "alloca_once(builder, ty, size, name, zfill)", "false_bit", "gep(builder, ptr, inds, kws)",
-        "gep_inbounds(builder, ptr, inds, kws)", "get_or_insert_function(module, fnty, name)", "ir.FunctionType",
-        "ir.IntType", "is_not_null(builder, val)", "true_bit", "unpack_tuple(builder, tup, count)",
+        "_StructProxy._getvalue(self)", "alloca_once(builder, ty, size, name, zfill)", "false_bit",
+        "gep(builder, ptr, inds, kws)",
+        "gep_inbounds(builder, ptr, inds, kws)", "get_or_insert_function(module, fnty, name)",
+        "ir.FunctionType", "ir.IntType", "is_not_null(builder, val)", "true_bit", "unpack_tuple(builder, tup, count)",
     ),
     "numba.core.codegen": (
         "CPUCodegen.magic_tuple(self)", "CPUCodegen: _data_layout", "JITCodeLibrary.__init__(self, codegen, name)",

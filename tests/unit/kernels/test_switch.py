@@ -1,4 +1,4 @@
-"""The next numba stops nothing: whatever surprises the own way throws the switch, and numba as it comes does the work."""
+"""The next numba stops nothing: what surprises the own way throws the switch, and numba as it comes does the work."""
 
 from __future__ import annotations
 
@@ -124,14 +124,14 @@ def test_one_folder_knows_numba():
             assert of_numba <= PUBLIC, path
 
 
-def tiny():
+def tiny(shift=0.1):
     """A kernel with what it calls, declared anew: one of each kind."""
 
     def scaled(x, factor):
         return factor * x
 
     def shifted(x):
-        return x + 0.1
+        return x + shift
 
     def third(x):
         raise NotImplementedError
@@ -149,10 +149,10 @@ def tiny():
     return fill
 
 
-def check_tiny(fill) -> None:
+def check_tiny(fill, shift=0.1) -> None:
     array = np.arange(4.0)
     assert fill(array, 0.7) == array[0]
-    assert list(array) == [(0.7 * i + 0.1) / 3.0 for i in range(4)]
+    assert list(array) == [(0.7 * i + shift) / 3.0 for i in range(4)]
     assert fill.bound()(array, 0.7) == array[0]
 
 
@@ -186,7 +186,7 @@ def test_a_surprise_throws_the_switch(how, door, monkeypatch):
 def test_a_surprise_while_it_compiles_is_one_as_well(after, door, monkeypatch):
     """After numba was told of the functions: the other way takes copies of them. Kernels of before go it too."""
     was, left = callees.CalleePass.run_pass, [after * 100]
-    before, fill = tiny(), tiny()
+    before, fill = tiny(), tiny(0.2)
 
     def run_pass(self, state):
         left[0] -= 1
@@ -199,8 +199,8 @@ def test_a_surprise_while_it_compiles_is_one_as_well(after, door, monkeypatch):
         assert door.way is machine_code
     monkeypatch.setattr(callees.CalleePass, "run_pass", run_pass)
     left[0] = 0
-    for each in (fill, before, tiny()):
-        check_tiny(each)
+    for each, shift in ((fill, 0.2), (before, 0.1), (tiny(0.3), 0.3)):
+        check_tiny(each, shift)
         assert isinstance(each._made(), PlainKernel)
     assert SWITCH.reason == "AttributeError: no such thing"
 
