@@ -10,6 +10,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 os.environ.setdefault("DEM_CACHE_DIR", str(ROOT / ".numba_cache"))
 os.environ.setdefault("MPLBACKEND", "Agg")
+os.environ.setdefault("DEM_STRICT_KERNELS", "1")  # no kernel is compiled another way, or never kept, in silence
 os.environ.setdefault("DEM_TRACEBACK", "1")  # a fault of the program that a command turned into exit code 70
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell starts what runs behind it so: tests press Ctrl-C
     signal.signal(signal.SIGINT, signal.default_int_handler)

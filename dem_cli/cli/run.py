@@ -75,7 +75,12 @@ class TerminalListener(RunListener):
 @click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Default: results/NAME.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no remarks.")
-@click.option("-v", "--verbose", is_flag=True, help="Say what was skipped because the case does not need it, and what made compilation slow.")
+@click.option(
+    "-v",
+    "--verbose",
+    is_flag=True,
+    help="Say what was skipped because the case does not need it, and what made compilation slow.",
+)
 @click.option("--force", is_flag=True, help="Write among files that dem did not write; those stay.")
 @click.option(
     "-j",

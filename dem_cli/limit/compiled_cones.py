@@ -21,7 +21,9 @@ class CompiledCones(SlipCones):
 
     def fastest(self, x: np.ndarray, change: np.ndarray) -> tuple[float, float]:
         """As Slips has it."""
-        return find_fastest(x.reshape(8, -1), change.reshape(8, -1))
+        found = np.zeros(2)
+        find_fastest(x.reshape(8, -1), change.reshape(8, -1), found)
+        return float(found[0]), float(found[1])
 
     def moved(self, x: np.ndarray, change: np.ndarray, length: float = 1.0) -> np.ndarray:
         """As Slips has it."""
@@ -67,8 +69,8 @@ class CompiledStiffness(ConeStiffness):
 
 
 @kernel
-def find_fastest(x, change):
-    """Fastest fall and growth of anything in x (8, n) by a change (8, n), relative to itself."""
+def find_fastest(x, change, found):
+    """Fastest fall and growth of anything in x (8, n) by a change (8, n), relative to itself, into found (2,)."""
     low, high = 0.0, 0.0
     for i in range(x.shape[1]):
         normal, opening = change[0, i] / x[0, i], change[4, i] / x[1, i]
@@ -81,7 +83,7 @@ def find_fastest(x, change):
             middle = 0.5 * (one + two)
             radius = sqrt(0.25 * ((one - two) * (one - two)) + 0.5 * (across * across))
             low, high = min(low, middle - radius), max(high, middle + radius)
-    return low, high
+    found[0], found[1] = low, high
 
 
 @inline

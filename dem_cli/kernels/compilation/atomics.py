@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 from numba import types
 from numba.core import cgutils
@@ -56,8 +56,9 @@ def give_core_away(typing_context: Any) -> Any:
     return types.void(), code
 
 
+_add, _seen, _give_core_away = (cast(Callable, each) for each in (add, seen, give_core_away))
 ATOMICS: dict[str, Callable] = {  # what the types of arguments make of functions of kernels/tiles/team.py
-    "add_at_once": lambda array, index, amount: lambda array, index, amount: add(array, index, amount),
-    "now_at": lambda array, index: lambda array, index: seen(array, index),
-    "give_way": lambda: lambda: give_core_away(),
+    "add_at_once": lambda array, index, amount: lambda array, index, amount: _add(array, index, amount),
+    "now_at": lambda array, index: lambda array, index: _seen(array, index),
+    "give_way": lambda: lambda: _give_core_away(),
 }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 from numba import types
 from numba.core import cgutils
@@ -22,4 +22,5 @@ def lowest(typing_context: Any, bits: Any) -> Any:
     return types.int64(types.int64), code
 
 
-BITS: dict[str, Callable] = {"lowest_bit": lambda bits: lambda bits: lowest(bits)}  # of kernels/tiles/lanes.py
+_lowest = cast(Callable, lowest)
+BITS: dict[str, Callable] = {"lowest_bit": lambda bits: lambda bits: _lowest(bits)}  # of kernels/tiles/lanes.py

@@ -35,7 +35,12 @@ def _compiler() -> bytes:
         origin = Path(spec.origin) if spec is not None and spec.origin is not None else None
         if origin is None:
             raise ModuleNotFoundError(f"No module named '{package}'", name=package)
-        found += (origin.parent / "_version.py").read_bytes()
+        try:
+            found += (origin.parent / "_version.py").read_bytes()
+        except OSError:  # a package that writes its version elsewhere
+            from importlib.metadata import version
+
+            found += version(package).encode()
     return found
 
 

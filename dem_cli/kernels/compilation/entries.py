@@ -29,6 +29,7 @@ __all__ = ["KernelLowering", "keep_compiled"]
 _RESULTS = {types.int64: "i", types.float64: "d", types.boolean: "b", types.none: ""}
 _OF_PYTHON = re.compile(r"(NRT_|numba_|Py|_Py|\.numba)")  # names of what only numba and Python have
 _NEVER_DONE = {"NRT_incref", "NRT_decref", "NRT_MemInfo_call_dtor"}  # to arrays whose memory somebody else counts
+_TAKES = "it takes "  # which is for who calls it to mend, not for who wrote it
 _NAMES = re.compile(r'@"?([\w.$]+)"?')
 
 
@@ -52,8 +53,9 @@ def kind_of_type(kind: types.Type) -> str | None:
 
 def _hindrance(of: Any) -> str:
     """Why a function gets no entry, of what it takes and returns; nothing where it gets one."""
-    taken = [f"it takes {each}" for each in of.argtypes if kind_of_type(each) is None]
-    return next(iter(taken), "" if of.restype in _RESULTS else f"it returns {of.restype}")
+    if of.restype not in _RESULTS:
+        return f"it returns {of.restype}"
+    return next((f"{_TAKES}{each}" for each in of.argtypes if kind_of_type(each) is None), "")
 
 
 class KernelLower(Lower):
@@ -110,7 +112,11 @@ def keep_compiled(function: Callable, of: Any, code: bytes, module: Any) -> None
     of_python = sorted(name for name in called if _OF_PYTHON.match(name))
     if hindrance or of_python or entry not in called:
         why = hindrance or (f"it calls {of_python[0]}" if of_python else "it has no entry")
-        SWITCH.remark(f"numba is loaded in each process for {function.__module__}.{function.__qualname__}: {why}")
+        name = f"{function.__module__}.{function.__qualname__}"
+        of_package = name.partition(".")[0] == __name__.partition(".")[0]
+        SWITCH.remark(
+            f"numba is loaded in each process for {name}: {why}", fault=of_package and not why.startswith(_TAKES)
+        )
         return
     undefined = _undefined(code)
     needed = sorted(name for name in undefined if name in called or not _OF_PYTHON.match(name))

@@ -22,7 +22,7 @@ from dem_cli.kernels.compilation.bits import BITS
 from dem_cli.kernels.compilation.cache_folder import cache_folder, fingerprint
 from dem_cli.kernels.compilation.callees import CALLEE, KERNEL, CalleeCompiler
 from dem_cli.kernels.compilation.entries import keep_compiled
-from dem_cli.kernels.compilation.numba_setup import set_up_numba
+from dem_cli.kernels.compilation.numba_setup import UNDER_WAY, set_up_numba
 from dem_cli.kernels.compilation.references import pass_records_by_reference
 from dem_cli.kernels.compilation.shortcuts import take_shortcuts
 from dem_cli.kernels.compilation.switch import SWITCH
@@ -78,7 +78,8 @@ class KernelCache(FunctionCache):
         try:
             super().save_overload(sig, data)
             library = data.library
-            keep_compiled(self._py_func, data.fndesc, library._get_compiled_object(), library._final_module)
+            if not UNDER_WAY:  # else another kernel calls it, not Python
+                keep_compiled(self._py_func, data.fndesc, library._get_compiled_object(), library._final_module)
         except OSError as error:
             SWITCH.remark(f"{self._py_func.__qualname__} is not kept: {error}")
         except Exception as error:
@@ -89,8 +90,9 @@ class KernelCache(FunctionCache):
         found = self._cache_file.load(self._index_key(sig, target_context.codegen()))
         if found is None:
             return None
-        (_, _, (code, bitcode)), of = found[:2]
-        keep_compiled(self._py_func, of, code, parse_bitcode(bitcode))
+        if not UNDER_WAY:
+            (_, _, (code, bitcode)), of = found[:2]
+            keep_compiled(self._py_func, of, code, parse_bitcode(bitcode))
         return self._impl.rebuild(target_context, found)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:

@@ -13,7 +13,9 @@ import numba
 from dem_cli.kernels.compilation.cache_folder import cache_folder
 from dem_cli.kernels.compilation.compile_time import LISTENING
 
-__all__ = ["set_up_numba"]
+__all__ = ["UNDER_WAY", "set_up_numba"]
+
+UNDER_WAY: list[Any] = []  # compilations: of a kernel, of a function that it calls, and so on
 
 
 def set_up_numba() -> None:
@@ -39,21 +41,21 @@ def _tell_who_listens() -> None:
         fifth of the time of compilation.
         """
 
-        _depth, _collecting = 0, False
+        _collecting = False
 
         def on_start(self, event: Any) -> None:
             """A kernel, or something inside of it."""
-            if not self._depth:
+            if not UNDER_WAY:
                 for each in LISTENING:
                     each.begins()
                 self._collecting = gc.isenabled()
                 gc.disable()
-            self._depth += 1
+            UNDER_WAY.append(event)
 
         def on_end(self, event: Any) -> None:
             """A kernel, or something inside of it."""
-            self._depth -= 1
-            if not self._depth:
+            UNDER_WAY.pop()
+            if not UNDER_WAY:
                 if self._collecting:
                     gc.enable()
                 for each in LISTENING:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from types import FunctionType
-from typing import Any
+from typing import Any, cast
 
 import numba
 from numba.extending import overload, register_jitable
@@ -23,7 +23,11 @@ from dem_cli.kernels.compilation.switch import SWITCH
 
 __all__ = ["PlainKernel", "PlainNumba"]
 
-_OPTIONS = {"error_model": "numpy", "fastmath": False, "nogil": True}  # IEEE division: same input, same bytes
+_OPTIONS: dict[str, Any] = {
+    "error_model": "numpy",
+    "fastmath": False,
+    "nogil": True,
+}  # IEEE division: same input, same bytes
 
 
 class PlainNumba:
@@ -77,6 +81,7 @@ class PlainKernel:
     def __init__(self, function: FunctionType, kept: bool = True) -> None:
         self._function, self._kept = function, kept
         self._made: dict[tuple[str, ...], Callable] = {}
+        self._of_any_types: Any = numba.njit(**_OPTIONS)(function)
 
     def __call__(self, *arguments: Any) -> Any:
         """Runs it; compiles it at the first call with these types."""
@@ -96,7 +101,11 @@ class PlainKernel:
                 return numba.njit(types, cache=True, **_OPTIONS)(self._named_by(kinds))
             except Exception as error:  # of the cache; where it is the kernel's, it comes again
                 SWITCH.remark(f"{self._function.__qualname__} is not kept: {type(error).__name__}: {error}")
-        return numba.njit(**_OPTIONS)(self._function)
+        return cast(Callable, self._of_any_types)
+
+    def __getattr__(self, name: str) -> Any:
+        """What numba asks for where another kernel calls this one."""
+        return getattr(self._of_any_types, name)
 
     def _named_by(self, kinds: tuple[str, ...]) -> FunctionType:
         """The same function, with a name that says for which arguments it is compiled."""

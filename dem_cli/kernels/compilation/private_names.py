@@ -42,9 +42,10 @@ PRIVATE_NAMES: dict[str, tuple[str, ...]] = {
         "CPUCallConv.get_function_type(self, restype, argtypes)",
     ),
     "numba.core.cgutils": (
-        "alloca_once(builder, ty, size, name, zfill)", "false_bit", "gep(builder, ptr, inds, kws)",
-        "gep_inbounds(builder, ptr, inds, kws)", "get_or_insert_function(module, fnty, name)", "ir.FunctionType",
-        "ir.IntType", "is_not_null(builder, val)", "true_bit", "unpack_tuple(builder, tup, count)",
+        "_StructProxy._getvalue(self)", "alloca_once(builder, ty, size, name, zfill)", "false_bit",
+        "gep(builder, ptr, inds, kws)",
+        "gep_inbounds(builder, ptr, inds, kws)", "get_or_insert_function(module, fnty, name)",
+        "ir.FunctionType", "ir.IntType", "is_not_null(builder, val)", "true_bit", "unpack_tuple(builder, tup, count)",
     ),
     "numba.core.codegen": (
         "CPUCodegen.magic_tuple(self)", "CPUCodegen: _data_layout", "JITCodeLibrary.__init__(self, codegen, name)",
@@ -58,7 +59,7 @@ PRIVATE_NAMES: dict[str, tuple[str, ...]] = {
     ),
     "numba.core.compiler": ("Compiler.define_pipelines(self)",),
     "numba.core.compiler_machinery": (
-        "FunctionPass.__init__(self, args, kwargs)", "FunctionPass.run_pass(self, args, kwargs)",
+        "FunctionPass.run_pass(self, args, kwargs)",
         "PassManager.add_pass_after(self, pass_cls, location)", "PassManager.finalize(self)", "PassManager: passes",
         "register_pass(mutates_CFG, analysis_only)",
     ),
@@ -73,9 +74,9 @@ PRIVATE_NAMES: dict[str, tuple[str, ...]] = {
         "PythonAPI.err_set_string(self, exctype, msg)", "PythonAPI.numba_array_adaptor(self, ary, ptr)",
         "PythonAPI.tuple_getitem(self, tup, idx)",
     ),
-    "numba.core.runtime.nrt": ("rtsys.initialize(ctx)",),
+    "numba.core.runtime.nrt": ("rtsys",),
     "numba.core.targetconfig": (
-        "ConfigStack.top_or_none()", "TargetConfig.__eq__(self, other)", "TargetConfig.__hash__(self)",
+        "ConfigStack.top_or_none()", "TargetConfig.__eq__(self, other)",
         "TargetConfig: _values",
     ),
     "numba.core.typed_passes": (

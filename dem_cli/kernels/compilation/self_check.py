@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -41,8 +41,8 @@ def check_small_kernel() -> None:
     """Raises Surprise where compiled code gives something else than Python."""
     machine_code.declare_callee(_scaled, True)
     machine_code.declare_callee(_summed, False)
-    given: tuple[Any, ...] = Sample(np.arange(6.0).reshape(3, 2) - 0.3, 1.7), (3.0, 0.1)
+    sample, given = Sample(np.arange(6.0).reshape(3, 2) - 0.3, 1.7), (3.0, 0.1)
     expected, found = np.zeros(3), np.zeros(3)
-    answers = _sums(*given, expected), machine_code.compiled(_sums)(*given, found)
+    answers = _sums(sample, given, expected), machine_code.compiled(_sums)(sample, given, found)
     if answers[0] != answers[1] or expected.tobytes() != found.tobytes():
         raise Surprise("a small kernel gives another answer than Python")

@@ -87,7 +87,7 @@ def take_shortcuts(compiler: type) -> None:
     _put(BaseContext, "get_abi_sizeof", _size_of)
     _put(BaseFunction, "get_call_type", _call_type)
     _put(TargetConfig, "__eq__", _equal)
-    _put(TargetConfig, "__hash__", lambda one: _hash_of(type(one)))
+    _put(TargetConfig, "__hash__", lambda one: _hash_of(type(one)))  # type: ignore[arg-type]
     _put(base, "_has_loc", cache(base._has_loc))
     lower_builtin("__array__", types.Array)(_itself)
 

@@ -47,9 +47,9 @@ class Switch:
         if self.own_way():
             self.reason = _words(surprise)
 
-    def remark(self, text: str) -> None:
-        """Something that costs time in each process, but no answer. Raises Surprise where that is an error."""
-        if _set(STRICT):
+    def remark(self, text: str, fault: bool = False) -> None:
+        """Something that costs time in each process, but no answer; fault: Surprise is raised where it is an error."""
+        if fault and _set(STRICT):
             raise Surprise(text)
         if text not in self.remarks:
             self.remarks.append(text)

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from dem_cli.kernels.compilation import cache_folder, kept_code
-from dem_cli.kernels.compilation.kept_code import OtherTypes, kept_kernel, kind_of, may_be_kept
+from dem_cli.kernels.compilation.kept_code import kept_kernel, may_be_kept
+from dem_cli.kernels.compilation.kinds import OtherTypes, kind_of
 from dem_cli.kernels.jit import kernel
 from dem_cli.kernels.records import Loads
 from dem_cli.kernels.vec import in_a_row, shaped_as

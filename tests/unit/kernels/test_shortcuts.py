@@ -11,9 +11,8 @@ from numba.core.compiler import Flags
 from numba.core.errors import TypingError
 from numba.core.registry import cpu_target
 
-from dem_cli.kernels.compilation import callees, shortcuts
+from dem_cli.kernels.compilation import shortcuts
 
-pytestmark = pytest.mark.skipif(not callees.KERNEL, reason="a numba that shortcuts were not tried with")
 NUMBERS = (types.int64, types.uint64, types.float64, types.boolean, types.literal(2), types.float64[:, ::1])
 
 
