@@ -1,4 +1,4 @@
-"""Estimate of a run, for `dem check`: joints, stiffness, kinematics, time step, cost; nothing is solved.
+"""Estimate of a run, for `dem check`: joints, stiffness, kinematics, time step; nothing is solved.
 
 Only the kernels of detection run here; the stepping loop is not compiled.
 """
@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.analyses.estimate_cost import cost_of
 from dem_cli.engine.automatic_stiffness import needed_ratio, ratio_of, static_ratio
-from dem_cli.engine.clock import duration_words
 from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
 from dem_cli.engine.measures import shares_of_blocks
 from dem_cli.engine.properties import joint_properties, law_of
@@ -27,28 +27,11 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 Rows = list[tuple[str, str]]
-STEPS = {  # kind of analysis -> fewest and most steps that cases of cases/ took, a few beside
-    "gravity": (500, 50_000),
-    "pushover": (50_000, 400_000),
-    "cycle": (100_000, 1_000_000),
-    "settlement": (100_000, 300_000),
-    "safety": (2_000, 60_000),  # each of its runs
-    "modes": (500, 50_000),
-}
 LIBRARIES = 250e6  # bytes of a run of a few blocks: Python, compiled code, what is imported
 STATES = 15  # of the structure, that an analysis holds: highest equilibrium, failure, points of a curve
 COMPILING = 700e6  # bytes while the loops of time histories in space are compiled, once
-BESIDE = 0.4  # s of every analysis beside its steps: what is imported, loaded, looked at and written
-CURVE = (150_000, 2_000_000)  # of a pushover under displacement control
-GIVEN = (300_000, 4_000_000)  # of a pushover on joints whose stiffness is a property, or whose profile is: more
 IN_SECONDS = ("time-history", "fragility")  # kinds that estimate_shaking.py knows
 VISIBLE = {"settlement": "supports move visibly", "modes": "the forces of gravity turn and shift with the blocks"}
-COLLAPSE = "; where it collapses, ten to thirty times that: how far it stands is sought then"  # of a settlement
-FOLLOW_STEPS = (40_000, 100_000)  # to follow a collapse
-NANOSECONDS = {  # per contact point and step, one core (scripts/benchmark), by dimension
-    2: {"fixed": 10, "large": 20},
-    3: {"fixed": 10, "large": 90},
-}
 LARGE = "the load is raised from there, and may be “at least …, not above …”"  # of a structure that is large
 BED = np.cos(np.pi / 4)  # a bed joint has its normal within 45° of the vertical
 
@@ -81,7 +64,7 @@ def describe(case: Case, model: Model) -> Rows:
         ("time step", _time_step(sim)),
         *_runs(case),
         *_path(case, sim),
-        ("cost", _cost(case, sim)),
+        *cost_of(case, sim, _of_property(sim)),
         ("memory", _memory(sim)),
         ("load", _load(case, model)),
         *_links(model),
@@ -99,16 +82,18 @@ def _links(model: Model) -> Rows:
 
 
 def _shaking(case: Case, model: Model) -> Rows:
-    from dem_cli.analyses.estimate_shaking import describe_shaking, settings_of
+    from dem_cli.analyses.estimate_shaking import describe_shaking
     from dem_cli.dynamics.history import damping_of_start, shaken
+    from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 
-    settings = settings_of(case, model)
+    chosen = rocking_stiffness(case, model, DEFAULT)
+    settings = chosen.applied(DEFAULT)
     sim = shaken(case, model, damping_of_start(case, model, settings), settings=settings)
     return [
         *_blocks(model, case.gravity),
         *_joints(case, sim),
         *_stiffness(case, sim),
-        *describe_shaking(case, sim, BESIDE),
+        *describe_shaking(case, sim, chosen.automatic),
         ("memory", _memory(sim)),
         *_links(model),
         ("monitors", _monitors(case)),
@@ -267,27 +252,6 @@ def _path(case: Case, sim: Simulation) -> Rows:
     return [("path", f"one structure of {blocks:,} blocks: {way} leads next to failure, in a minute or two; {LARGE}")]
 
 
-def _cost(case: Case, sim: Simulation) -> str:
-    """Seconds of one core, from the steps that such an analysis took elsewhere."""
-    points, costs = sim.first_points, NANOSECONDS[sim.model.dimension]
-    few, many = (min(steps, case.analysis.max_steps) for steps in _steps(case, sim))
-    if case.analysis.kind == "safety":
-        from dem_cli.ensembles.static_values import expected
-
-        few, many = (steps * runs for steps, runs in zip((few, many), expected(case)))
-    moves = sim.kinematics != "fixed" or (_of_property(sim) and case.analysis.kinematics == "auto")
-    nanoseconds = costs[sim.kinematics], costs["large" if moves else "fixed"]
-    seconds = [BESIDE + 1e-9 * steps * points * each for steps, each in zip((few, many), nanoseconds)]
-    each = f"{nanoseconds[0]}" if nanoseconds[0] == nanoseconds[1] else f"{nanoseconds[0]} to {nanoseconds[1]}"
-    basis = f"{few:,} to {many:,} steps × {points:,} points × {each} ns"
-    if getattr(case.analysis, "follow", 0.0) > 0.0 and getattr(case.analysis, "control", "load") == "load":
-        fewest, most = FOLLOW_STEPS
-        seconds = [s + 1e-9 * n * points * costs["large"] for s, n in zip(seconds, FOLLOW_STEPS)]
-        basis += f", then {fewest:,} to {most:,} × {costs['large']} ns for the collapse"
-    collapse = COLLAPSE if case.analysis.kind == "settlement" else ""
-    return f"{duration_words(seconds[0])} to {duration_words(seconds[1])} on one core ({basis}){collapse}"
-
-
 def _memory(sim: Simulation) -> str:
     """Largest memory of a run: the libraries, and as many states of the structure as an analysis holds at a time."""
     saved = sim.save()
@@ -296,15 +260,6 @@ def _memory(sim: Simulation) -> str:
     size = f"{each:.2g}" if each < 10.0 else f"{each:,.0f}"
     basis = f"{1e-6 * LIBRARIES:.0f} MB, {STATES} states of the structure of {size} MB"
     return f"some {whole:,.0f} MB ({basis}); up to {1e-6 * COMPILING:.0f} MB where kernels are compiled first"
-
-
-def _steps(case: Case, sim: Simulation) -> tuple[int, int]:
-    """Fewest and most steps of such an analysis."""
-    if case.analysis.kind == "pushover":
-        if case.analysis.control == "displacement":
-            return CURVE
-        return GIVEN if _of_property(sim) else STEPS["pushover"]
-    return STEPS[case.analysis.kind]
 
 
 def _of_property(sim: Simulation) -> bool:

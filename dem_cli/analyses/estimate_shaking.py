@@ -6,37 +6,26 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from dem_cli.analyses.estimate_cost import cost_of_shaking
 from dem_cli.analyses.modes import touching_points
 from dem_cli.dynamics.frequencies import modes, system
 from dem_cli.dynamics.ground import GroundMotion
-from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 from dem_cli.dynamics.time_step import TimeStep, time_step
-from dem_cli.engine.clock import duration_words
-from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.record_search import records_of, runs_per_record
 from dem_cli.motion.ground_motions import motions_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.dynamic import DynamicSimulation
-    from dem_cli.model.model import Model
     from dem_cli.motion.motion import Motion
 
-NANOSECONDS = {  # per contact point and step, one core, by dimension, without and with dashpots
-    2: {False: 20, True: 55},
-    3: {False: 60, True: 110},  # about: a third less where blocks stand, a third more where all of them rock
-}
-PER_STEP = 0.4  # µs beside them
 MOST_MOTIONS = 6  # that are listed
+SOFTER = DEFAULT.rocking.softer
 
 
-def settings_of(case: Case, model: Model) -> Settings:
-    """Settings with the stiffness that a run gives "auto" joints."""
-    return rocking_stiffness(case, model, DEFAULT).applied(DEFAULT)
-
-
-def describe_shaking(case: Case, sim: DynamicSimulation, beside: float) -> list[tuple[str, str]]:
-    """Lines of `dem check`; beside: what a run takes beside its steps [s].
+def describe_shaking(case: Case, sim: DynamicSimulation, automatic: bool) -> list[tuple[str, str]]:
+    """Lines of `dem check`; automatic: some joints have the stiffness that the program chose.
 
     Raises CaseError where analysis.time_step is not stable.
     """
@@ -47,7 +36,7 @@ def describe_shaking(case: Case, sim: DynamicSimulation, beside: float) -> list[
         ("highest frequency", step.cause),
         ("time step", _step(step)),
         ("first frequency", _first(sim)),
-        *_cost(case, sim, step, beside),
+        *_cost(case, sim, step, automatic),
     ]
 
 
@@ -64,27 +53,24 @@ def _first(sim: DynamicSimulation) -> str:
     return f'{found.frequencies[0]:.4g} Hz, all joints that touch closed; kind = "modes" has those under gravity'
 
 
-def _cost(case: Case, sim: DynamicSimulation, step: TimeStep, beside: float) -> list[tuple[str, str]]:
+def _cost(case: Case, sim: DynamicSimulation, step: TimeStep, automatic: bool) -> list[tuple[str, str]]:
     analysis, ground = case.analysis, GroundMotion(motions_of(case), sim.model)
-    length, points = analysis.duration or ground.duration, sim.first_points
+    length = analysis.duration or ground.duration
     if length <= 0.0:
         return [("load", "how long is not said: no [motion] does, and analysis.duration is missing")]
-    runs, said = _runs(case)
+    checked = automatic and analysis.kind != "fragility"
+    runs, said = _runs(case, checked)
     peak = "" if analysis.kind == "fragility" else f", {ground_words(motions_of(case))}"
     rows = [("load", f"{length:g} s of motion{peak}"), *([("runs", said)] if said else [])]
     if not math.isfinite(step.step):
         return rows
     steps = math.ceil(length / step.step)
     more = math.ceil(analysis.coda / step.step)
-    each_point = NANOSECONDS[sim.model.dimension][sim.damping.in_joints]
-    seconds = beside + (1e-9 * each_point * points + 1e-6 * PER_STEP) * steps * runs
-    work = f"{points:,} points × {each_point} ns + {PER_STEP} µs"
-    each = f"{runs:,} runs × " if runs > 1 else ""
     return [
         *rows,
         ("steps", f"{steps:,}"),
         *([("coda", f"up to {more:,} steps more, where it still moves then")] if more else []),
-        ("cost", f"{duration_words(seconds)} on one core ({each}{steps:,} steps × ({work}))"),
+        *cost_of_shaking(sim, step, steps, more, runs, SOFTER if checked else None),
     ]
 
 
@@ -105,13 +91,18 @@ def _way(direction: Sequence[float]) -> str:
     return f"[{', '.join(f'{part:.3g}' for part in direction)}]"
 
 
-def _runs(case: Case) -> tuple[int, str]:
-    """How many runs there are at most, and why; no words for one."""
+def _runs(case: Case, checked: bool) -> tuple[int, str]:
+    """How many runs there are at most, and why; no words for one. checked: stiffness is, by one more."""
     analysis = case.analysis
     repeats = 1 + analysis.repeats
     words = f" × {repeats} with repeats" if repeats > 1 else ""
     if analysis.kind != "fragility":
-        return repeats, f"{repeats} with repeats" if repeats > 1 else ""
+        said = [f"{repeats} with repeats"] if repeats > 1 else []
+        if checked:
+            said += [
+                f"one more on joints {SOFTER:g} times as soft where blocks rock or slide, as their stiffness is auto"
+            ]
+        return repeats, ", ".join(said)
     records = len(records_of(case))
     levels = runs_per_record(analysis)
     name = "steps of bisection" if analysis.bisects else "intensities"

@@ -2,7 +2,7 @@
 
 Even instants alone alias what moves faster, and miss every peak. A snapshot is due when so much time has passed that
 the ground would be lost, or when a block has moved by a part of its swings, or turned by much; beside these, a swing
-that goes farther than all before it leaves the frame of its turning point. While no block moves visibly against the
+that goes farther than all before it leaves the frame of its turning point. Until a block has moved visibly against the
 ground a few are enough.
 """
 
@@ -43,7 +43,7 @@ class Intervals:
         self.interval, self.interval_still, self.end = interval, max(interval, interval_still), end
 
     def due(self, time: float, since: float, still: bool) -> bool:
-        """Whether the last one is long ago [s], or this is the end; still: no block moved visibly since then."""
+        """Whether the last one is long ago [s], or this is the end; still: no block has moved visibly until now."""
         return since >= (self.interval_still if still else self.interval) or time >= self.end
 
 
@@ -96,7 +96,7 @@ class Snapshots:
             return
         record, self.farthest = moved > self.farthest, max(moved, self.farthest)
         away = _largest(places - self.last)
-        still = away < self.settings.swing * self.visible
+        still = self.farthest < self.settings.swing * self.visible
         if self.times.due(sim.time + 0.5 * sim.dt, since + 0.5 * sim.dt, still) or self._swung(away):
             if self.ahead is not None and not record:
                 self._keep(self.ahead)

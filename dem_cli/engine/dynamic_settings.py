@@ -59,7 +59,7 @@ class SnapshotSettings:
     """Snapshots of a time history: how many show its motion, where the case does not say it."""
 
     per_second: float = 12.5  # [1/s], at least: what a movie of it needs
-    per_second_still: float = 2.5  # [1/s], while no block moves visibly: a frame takes as long as a thousand steps or more
+    per_second_still: float = 2.5  # [1/s], until a block has moved visibly: a frame takes as long as a thousand steps
     per_cycle: float = 8.0  # of the ground, by the mean frequency of its velocity
     per_second_of_collapse: float = 25.0  # [1/s]
     most_per_second: float = 100.0  # [1/s]

@@ -113,9 +113,9 @@ class AssociatedSettings:
     nothing: float = 1e-3  # live over dead loads, below which bounds are compared with this
     proof: float = 1e-6  # relative error accepted in a proof that something is impossible
     slides: float = 1e-3  # share of friction in the work of a mechanism, below which nothing slides in it
-    # Degrees of freedom in space up to which the cone program is factorised column by column, beyond in supernodes. The
-    # ratio of CPU seconds was 0.64 to 0.94 for 500 to 1,100 blocks, 0.95 and 1.34 for 2,000, 1.31 for 3,000 of walls and
-    # houses: supernodes do more at a time, but are ordered with a quarter more entries.
+    # Degrees of freedom up to which the cone program is factorised column by column, beyond in supernodes. The ratio of
+    # CPU seconds in space was 0.64 to 0.94 for 500 to 1,500 blocks, 0.95 and 1.34 for 2,000, 1.31 for 3,000, of walls,
+    # vaults and houses: supernodes do more at a time, but are ordered with a quarter more entries.
     by_columns: int = 9000
     # Of the interior point on fronts (limit/frontal_program.py)
     on_fronts: int = 5000  # degrees of freedom from which on the loads of plane joints with friction alone are found so

@@ -44,7 +44,7 @@ class PiecewisePolynomial:
         for power, coefficients in enumerate(self.c[::-1]):
             raised[k - 1 - power] = coefficients / math.perm(power + order, order)
         steps = np.diff(self.x[:-1])
-        for derivative in reversed(range(order)):  # whose values are continuous: those at the ends of the pieces, summed
+        for derivative in reversed(range(order)):  # is continuous: a piece starts from what those before it gained
             gained, rise = [], np.ones(len(steps))
             for power in range(derivative + 1, k + order):
                 rise = rise * steps

@@ -32,7 +32,8 @@ FRAME_SCALARS = ("step", "load", "displacement", "time")
 FRAME_ARRAYS = ("positions", "orientations", "velocities")
 _BUFFERED_ROWS = 4096
 _BUFFERED_SAMPLES = 1024
-_UNFLUSHED, _OF_A_STEP = 10_000_000, 15  # contact points × steps, some tenths of a second, and what a step counts beside
+_UNFLUSHED = 10_000_000  # contact points × steps, some tenths of a second of work
+_OF_A_STEP = 15  # contact points that a step counts as, beside its own
 _TEXT = h5py.string_dtype()
 JointsOf = Callable[[Model], FollowedJoints]
 

@@ -103,3 +103,42 @@ def test_a_case_says_the_same_of_the_tables_that_it_names_alone(path, monkeypatc
 )
 def test_mistakes_are_left_to_the_class_that_knows_all_kinds(tables, why):
     assert api._named(tables) is None
+
+
+SHAKEN = """
+[materials.stone]
+density = 2400.0
+[joints.dry]
+friction = 0.6
+[[structure]]
+kind = "column"
+block = [0.5, 1.0]
+courses = 1
+[motion]
+kind = "artificial"
+spectrum = "EC8-1"
+soil = "B"
+ag = 3.0
+duration = 3.0
+plateau = 1.0
+iterations = 2
+[analysis]
+kind = "time-history"
+"""
+PREPARED = """
+import sys
+from dem_cli import api
+from dem_cli.analyses import time_history
+from dem_cli.motion.ground_motions import motions_of
+
+print(motions_of(api.load_case(sys.argv[1]).case)[0].displacement(1.0))
+print("LOADED", sorted(n for n in ("scipy.signal", "scipy.optimize", "scipy.interpolate") if n in sys.modules))
+"""
+
+
+def test_an_earthquake_is_made_without_the_heavy_parts_of_scipy(tmp_path):
+    """They were half of a history of a second: one filter, one root, and polynomials between samples."""
+    case = tmp_path / "shaken.toml"
+    case.write_text(SHAKEN)
+    done = subprocess.run([sys.executable, "-c", PREPARED, str(case)], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "LOADED []"

@@ -32,7 +32,8 @@ def test_wall_of_21_blocks(monkeypatch):
     assert found["largest block"] == "'wall-1-2', 0.12 kg"
     assert "kn·h/W 1e+10, kn and ks chosen (auto)" in found["stiffness dry"]
     assert found["kinematics"].startswith("fixed (auto): all joints are closed")
-    assert "50,000 to 400,000 steps × 98 points × 10 ns" in found["cost"]
+    assert "30,000 to 2,000,000 steps × 98 points × 10 ns" in found["cost"]
+    assert found["first run"].startswith("2 to ")  # s of compiling, which the cost leaves out
     assert found["memory"].startswith("some 25")  # a run of it was seen to take 284 MB
     assert found["load"].startswith("mass: λ × weight of each block along [1.0, 0.0]; [21.19, 0] N")
     assert found["monitors"] == "displacement of 'top-right'"
@@ -116,6 +117,9 @@ def test_time_history(tmp_path, monkeypatch):
     assert found["cost"].endswith(f"({found['steps']} steps × (2 points × 55 ns + 0.4 µs))")
     assert found["load"] == "5 s of motion, peak 3 m/s²"
     assert "runs" not in found
+    automatic = shaken(tmp_path, "joints.dry.kn='auto'", "joints.dry.ks='auto'")
+    assert automatic["runs"].startswith("one more on joints 10 times as soft where blocks rock or slide")
+    assert automatic["cost"].endswith("and once more on softer joints)")
     repeated = shaken(tmp_path, "analysis.margin=0.5", "analysis.repeats=9")
     assert repeated["runs"] == "10 with repeats"
     assert f"(10 runs × {found['steps']} steps" in repeated["cost"]

@@ -8,11 +8,20 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
-from scipy.signal import lsim
+from scipy.signal import lfilter, lsim
 
 from dem_cli.motion.eurocode import SOILS, damping_correction, eurocode, listed
 from dem_cli.motion.pulses import SineWave
-from dem_cli.motion.spectrum import crest, exponential, oscillator, peak, response_spectrum, responses, subdivided
+from dem_cli.motion.spectrum import (
+    crest,
+    exponential,
+    oscillator,
+    peak,
+    pseudo_accelerations,
+    response_spectrum,
+    responses,
+    subdivided,
+)
 
 NOISE = np.cumsum(np.random.default_rng(1).normal(size=400)) * np.hanning(400)
 
@@ -167,3 +176,15 @@ def test_listed_spectrum():
     assert target.ground == 2.0
     assert target(np.array([0.25, 0.5, 1.25, 9.0])) == pytest.approx([3.5, 5.0, 3.0, 1.0])
     assert target.scaled(2.0)(0.25) == pytest.approx(7.0)
+
+
+def test_oscillators_side_by_side_are_filters_one_after_the_other():
+    """The same numbers to the last digit, as artificial motions are made with them."""
+    records = np.stack((NOISE, NOISE[::-1]))
+    omegas = np.array([2.0, 20.0, 150.0])
+    filters = [oscillator(omega, 0.05, 0.01) for omega in omegas]
+    moved = [
+        lfilter(one.displacement, one.denominator, records, zi=records[:, :1] * one.start[0])[0] for one in filters
+    ]
+    expected = omegas**2 * peak(np.stack(moved, axis=1))
+    np.testing.assert_array_equal(pseudo_accelerations(records, filters, omegas), expected)
