@@ -41,7 +41,7 @@ def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[
         + _leaning(case, sims[0], found.get("displacement_at_failure"))
     )
     if found.get("status") == "not converged":
-        said.append(_advice(case, sims[0], found.get("failure_load_bracket", [None, None])))
+        said.append(_advice(case, sims[0], found))
     return said
 
 
@@ -183,12 +183,25 @@ def _leaning(case: Case, sim: Simulation, moved: float | None) -> list[str]:
     ]
 
 
-def _advice(case: Case, sim: Simulation, bracket: list[float | None]) -> str:
-    """What is known and what may be done where all steps were used up."""
-    low, high = bracket
-    known = f"it stands at {low:.5g}" if low is not None else "no equilibrium was proven"
-    if high is not None:
-        known += f" and fails at {high:.5g}"
+def _known(found: dict[str, Any]) -> str:
+    """What is known of a load that was not found: neither side of so wide a bracket is a failure load."""
+    low, high = found.get("failure_load_bracket", [None, None])
+    bound = found.get("limit_analysis", {}).get("associated")
+    if low is None and high is None:
+        return "no equilibrium was proven"
+    parts = ["no equilibrium was proven" if low is None else f"it stands at {low:.5g}"]
+    if high is not None and "proof_of_failure" in found:
+        parts.append(f"it did not come to rest at {high:.5g}")
+    if bound is not None:
+        parts.append(f"by limit analysis it carries no more than {bound:.5g}")
+    if undecided := found.get("undecided_loads"):
+        parts.append(f"{len(undecided)} loads in between neither came to rest nor failed")
+    return "the failure load was not found: " + ", ".join(parts)
+
+
+def _advice(case: Case, sim: Simulation, found: dict[str, Any]) -> str:
+    """What is known and what may be done where a search ended without an answer."""
+    known = _known(found)
     weightless = not sim.loads.dead[sim.free].any()
     ways = ["give the blocks weight, or dead loads: nothing presses them together"] if weightless else []
     ways.append(f"raise analysis.max_steps ({case.analysis.max_steps:,})")

@@ -64,7 +64,7 @@ def take_back(sim: Simulation, points: np.ndarray) -> None:
     Forces stay to the last digit: what cannot go back at one point without closing another one stays for now.
     """
     before = sim.measured().gaps
-    moves.shift(sim, _motion_that_opens(sim, points, before))
+    moves.shift(sim, motion_that_opens(sim, points, before))
     gaps = sim.measured().gaps
     closure = np.minimum(gaps, 0.0)  # of open points: they stay open
     closure[points] = gaps[points] + sim.contacts.normal[points] / sim.joints.kn[points]
@@ -73,7 +73,7 @@ def take_back(sim: Simulation, points: np.ndarray) -> None:
         sim.contacts.gaps[:] = gaps
 
 
-def _motion_that_opens(sim: Simulation, points: np.ndarray, gaps: np.ndarray) -> np.ndarray:
+def motion_that_opens(sim: Simulation, points: np.ndarray, gaps: np.ndarray) -> np.ndarray:
     """Displacements of all blocks that open the points that press by their overlap, (n_blocks, n_dof) [m, rad].
 
     A block that stands on two points close to each other would turn until both are open, by as much as their distance

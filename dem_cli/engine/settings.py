@@ -123,7 +123,7 @@ class ReliefSettings:
     gain: float = 0.5  # of what is shown: where more is left after a round, another one would not end it either
     sliding: float = 1e-3  # of the shear stiffness: points go back without sliding where that is possible
     singular: float = 1e-12  # of the stiffness of a block, that holds what no joint holds: a mechanism is not elastic
-    pushed: float = 10.0  # largest closures, by which an open point may be pushed into overlap: no more than 1e-5 of a block
+    pushed: float = 10.0  # largest closures, by which an open point may be pushed into overlap: 1e-5 of a block
     rounds: int = 20  # in which points are held that would be pushed further
 
 

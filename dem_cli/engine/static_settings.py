@@ -66,6 +66,8 @@ class LoadSearchSettings:
     small_steps: int = 200  # to the power of two above a load on which histories differ; 100 to 400 agree within 0.3 %
     least_of_fewest: float = 0.5  # of the fewest steps of an equilibrium so far, that small steps take: 0.6 to 1.3
     light: float = 0.05  # load, over the weights, below which balance is asked for the more closely the smaller it is
+    noise: float = 3.0  # times what round-off leaves of balance: less is not asked for; 0.7 to 2.2 times were measured
+    unbalanced: float = 0.5  # resolutions of a load, that this may be at most
     trial: int = 300_000  # steps of one trial until it is left undecided, at least; and
     trial_per_point: int = 100  # steps × number of contact points, and
     trial_per_depth: int = 400  # times the square of the courses, where geometry moves: stacks sway as long as that

@@ -364,13 +364,22 @@ class LoadSearch:
             most = max(settings.trial, settings.trial_per_point * len(sim.joints.kn))
             if sim.kinematics == "large":
                 most = max(most, settings.trial_per_depth * sim.depth**2)
-            tolerance = sim.settings.relaxation.tolerance * min(abs(load) / settings.light, 1.0)
+            tolerance = self._tolerance(load)
             verdict = self._rests_soon(load, tolerance) or settle_or_fail(
                 sim, load, self.budget, answer.elastic * abs(load), tolerance,
                 ahead=self._ahead(load), most_steps=most,
             )  # fmt: skip
         self._passed("impossible" if impossible else "load", before, load, verdict.state)
         return verdict
+
+    def _tolerance(self, load: float) -> float:
+        """Unbalanced force, in own weights, of an equilibrium at a load: small loads are sought as closely as others.
+
+        Not more closely than coordinates are known: large structures on stiff joints would never come to rest.
+        """
+        settings, full = self.settings, self.sim.settings.relaxation.tolerance
+        known = min(settings.noise * measures.round_off(self.sim), settings.unbalanced * self.resolution * abs(load))
+        return min(max(full * min(abs(load) / settings.light, 1.0), known), full)
 
     def _rests_soon(self, load: float, tolerance: float) -> Verdict | None:
         """Equilibrium the fast way, where nothing slides at the bound: joints that only open remember no way there.

@@ -14,8 +14,9 @@ from casefiles import CASES
 from engine import Records, block, rectangle, scene, solve, tables
 from oracle.rolling_column import fall, foot
 
+from dem_cli.engine import measures
 from dem_cli.engine.job import Job
-from dem_cli.engine.rigid_joints import rigid_points, take_back, unrelieved
+from dem_cli.engine.rigid_joints import motion_that_opens, rigid_points, take_back, unrelieved
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.engine.simulation import Simulation
 from dem_cli.statics.equilibrium import relax, settle_or_fail, stand
@@ -184,3 +185,32 @@ def test_what_round_off_leaves_too_soft_is_said():
         said[number] = " ".join(job.outcome([job.first_simulation()], {"status": "ok"}).summary["warnings"])
     assert "as stiff as round-off allows" in said[300]
     assert said[30] == ""
+
+
+def test_a_block_on_two_points_side_by_side_does_not_turn_into_its_neighbours():
+    """A block over the head joint of the course below: closures 10 µm apart that differ by 0.5 µm are no turn of 0.05."""
+    supports = [
+        block("left", rectangle(-1, -1, 0, 0), fixed=True),
+        block("right", rectangle(1e-5, -1, 1, 0), fixed=True),
+    ]
+    crate = block("crate", rectangle(-0.5, 0, 0.5, 1))
+    _, sim = started(tables(*supports, crate, analysis={"kind": "gravity", "kinematics": "large"}))
+    x = sim.joints.points[:, 0]
+    middle = np.abs(x) < 0.1
+    sim.contacts.normal[:] = np.where(middle, 1e4, 0.0)
+    gaps = np.where(middle, np.where(x > 5e-6, -0.5e-6, -1e-6), 0.0)
+    moved = motion_that_opens(sim, np.flatnonzero(middle), gaps)
+    assert middle.sum() == 2
+    assert abs(moved[-1, 2]) < 1e-4
+    assert moved[-1, 1] == pytest.approx(0.75e-6, rel=0.5)
+
+
+def test_balance_is_not_asked_for_beyond_round_off():
+    """Coordinates of 1 km are known to 1e-13 m: a block of 4 m² on kn·h/W 1e6 rests to about 1e-7 of its weight."""
+    case = drums(2)
+    _, near = started(case)
+    for one in case["block"]:
+        one["vertices"] = [[x + 1000.0, y] for x, y in one["vertices"]]
+    _, far = started(case)
+    assert measures.round_off(near) < 1e-8
+    assert measures.round_off(far) == pytest.approx(1000.0 / 2.0 * measures.round_off(near), rel=0.5)
