@@ -8,7 +8,7 @@ through a run is compared with what this run has built itself.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,9 +16,7 @@ from dem_cli.kernels.fixed_joints import FixedJoints
 from dem_cli.kernels.tiles.joint_tiles import NO_TILES, tiled
 from dem_cli.output.resume.likeness import alike
 
-if TYPE_CHECKING:
-    from dem_cli.engine.simulation import Simulation
-
+Simulation = Any  # that of simulation.py, which imports this file
 _ROWS: dict[str, dict[str, str]] = {  # fields of records by how many rows they have; of those with "?" maybe none
     "MovingJoints": {"joints": "blocks law", "points": "frames levers points kn ks", "joints?": "held"},
     "FixedJoints": {"joints": "blocks law axes anchors arms", "points": "places kn ks"},
@@ -67,7 +65,7 @@ def guard_of(sim: Simulation) -> Callable[[Any], None]:
         _same(links, sim.links)
         _same(chains, sim.tracking.chains)
         if dampers is not None:
-            kept = sim.dampers  # type: ignore[attr-defined]
+            kept = sim.dampers
             _check_record(dampers, kept, _counts(sim, sim.joints))
             _require(0 <= kept.first <= sim.contacts.memory.shape[1], "Dampers.first")
 

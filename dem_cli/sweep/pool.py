@@ -1,7 +1,8 @@
 """Process pool of this machine: what kills a process does not stop the others, and nobody outlives the parent.
 
 A pipe to each process and one item at a time: no threads, no shared locks, so that a process may die at any moment, it
-is known what it was doing, and an interrupt finds the parent in a wait of its own.
+is known what it was doing, and an interrupt finds the parent in a wait of its own. Items and results go through it as
+pickles, which run what they say: both ends are processes of this program, nobody else holds them, and no file does.
 """
 
 from __future__ import annotations

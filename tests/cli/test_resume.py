@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import h5py
@@ -19,16 +21,20 @@ from dem_cli.cli.main import main
 from dem_cli.interrupts import Interrupts
 from dem_cli.output.resume.checkpoints import Checkpoints
 from dem_cli.output.resume.stages import Keeping
+from dem_cli.output.store import ResultWriter
 from dem_cli.pipeline.batches import BatchOptions
 from dem_cli.pipeline.execution import Destination, run_case
+from dem_cli.pipeline.listener import RunListener
 
 CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
+MIDDLE = 10  # checkpoints
 ALL = Keeping(first=0.0, every=0.005, worth=0.0)
 SCRIPT = """
 import sys, time
 from pathlib import Path
 from dem_cli import api
 from dem_cli.output.resume.stages import Keeping
+from dem_cli.output.store import ResultWriter
 from dem_cli.pipeline.batches import BatchOptions
 from dem_cli.pipeline.execution import Destination, run_case
 options = BatchOptions(1, sys.argv[3] == "resume", Keeping(0.0, 0.02, 0.0))
@@ -36,10 +42,19 @@ run_case(api.load_case(sys.argv[1]), Destination(Path(sys.argv[2])), time.perf_c
 """
 
 
+class Hearer(RunListener):
+    """Hears that all is kept."""
+
+    def stages_not_kept(self, why):
+        raise AssertionError(why)
+
+
 def run(case, folder, keeping=None, resume=False):
     options, interrupts = BatchOptions(1, resume, keeping), Interrupts(ends_program=False)  # others come after it
     destination, started = Destination(folder), time.perf_counter()
-    return run_case(api.load_case(case), destination, started, options=options, interrupts=interrupts)
+    return run_case(
+        api.load_case(case), destination, started, options=options, interrupts=interrupts, listener=Hearer()
+    )
 
 
 def untimed(value):
@@ -97,6 +112,66 @@ def test_killed_then_interrupted(name, tmp_path, monkeypatch):
     run(case, tmp_path / "out", ALL, resume=True)
     assert results(tmp_path / "out") == results(tmp_path / "straight")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "straight"]
+
+
+SPACE = """
+title = "Two blocks in space, of which the upper one is pushed off"
+dimension = 3
+[materials.stone]
+density = 2400.0
+[joints.dry]
+law = "coulomb"
+friction = 0.5
+kn = 1e9
+[[structure]]
+kind = "column"
+block = [0.5, 0.5]
+courses = 2
+thickness = 0.5
+base_extension = 0.3
+[analysis]
+kind = "time-history"
+duration = 0.05
+[damping]
+contact_fraction = 0.35
+[[initial]]
+block = "top"
+velocity = [0.2, 0.3, 0.1, 0.0, 0.0, 0.0]
+[output]
+frames = 3
+"""
+OTHERS = [  # what the cases above have not: bars, a fall, another structure, modes, safety, table, chains; then space
+    "bar_pull_out", "bouncing_block", "least_thickness_arch", "modes_block", "safety_incline", "tilting_table",
+    "space/slide_askew", "moving in space",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_every_kind_of_stage_goes_on(name, tmp_path, monkeypatch):
+    """From the middle of one, then from the end of all: each class of what a run keeps is among those that are kept."""
+    case = CASES / f"{name}.toml"
+    if name == "moving in space":
+        case = tmp_path / "case.toml"
+        case.write_text(SPACE)
+    whole, keeping, written = Checkpoints.write, Keeping(first=0.0, every=0.01, worth=0.0), []
+
+    def writing(self, *words):
+        whole(self, *words)
+        written.append(words[0])
+        if len(written) == MIDDLE:
+            raise Killed
+
+    run(case, tmp_path / "straight")
+    with monkeypatch.context() as patch:
+        patch.setattr(Checkpoints, "write", writing)
+        with suppress(Killed):
+            run(case, tmp_path / "out", keeping)
+            shutil.rmtree(tmp_path / "out")  # it had not that many
+        patch.setattr(ResultWriter, "close", lambda *words: kill())
+        with pytest.raises(Killed):
+            run(case, tmp_path / "out", keeping, resume=True)
+    run(case, tmp_path / "out", keeping, resume=True)
+    assert results(tmp_path / "out") == results(tmp_path / "straight")
 
 
 def test_sigkill_of_a_time_history(tmp_path):

@@ -71,7 +71,7 @@ def decoded(data: bytes, changing: list[Changing]) -> Any:
         for record in records:
             if guards and hasattr(record, "geometry"):
                 _accepted(record, guards)
-    except ValueError as error:
+    except (ValueError, AttributeError) as error:  # of attributes that are not there
         raise Damaged(str(error)) from None
     return more
 
@@ -95,9 +95,6 @@ def check_like(one: Any, state: Any) -> None:
             raise Damaged(f"{name!r} is nothing that changes of {type(one).__name__}")
         if name in here and not alike(here[name], value):
             raise Damaged(f"{name} of {type(one).__name__} is of another kind")
-    missing = here.keys() - state.keys() - lasting
-    if missing:
-        raise Damaged(f"{sorted(missing)[0]} of {type(one).__name__} is missing")
 
 
 def put_back(one: Any, state: Mapping[str, Any]) -> None:

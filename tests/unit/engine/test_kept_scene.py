@@ -16,7 +16,7 @@ from dem_cli.engine.viscous import Damping
 from dem_cli.output.resume.kept_objects import decoded, encoded
 from dem_cli.output.resume.kept_values import Damaged
 
-FREE = {  # numbers that lead nowhere: names by which points are known again, marks, room that is written before it is read
+FREE = {  # numbers that lead nowhere: names by which points are known again, marks, room
     "PlanarGeometry.features", "SpatialGeometry.features", "SpatialMotion.features", "SpatialMotion.labels",
     "Contacts.stale", "Bodies.turned", "Dampers.met", "Dampers.stirred", "JointTiles.ends", "JointTiles.team",
 }  # fmt: skip

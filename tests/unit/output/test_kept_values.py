@@ -87,12 +87,22 @@ def test_what_is_one_object_stays_one():
     assert not again[0][0].flags.writeable
 
 
-@pytest.mark.parametrize(
-    "value",
-    [object(), len, lambda: 0, Damaged("x"), np.array([object()]), np.array(["text"]), np.zeros(1, "f8,i4"), 1 << 2000,
-     type("Energy", (), {})(), np.ma.zeros(2), range(3), Energy(*"abcdefg")],
-    ids=repr,
-)  # fmt: skip
+UNKEPT = {
+    "an object": object(),
+    "a function": len,
+    "an error": Damaged("x"),
+    "an array of objects": np.array([object()]),
+    "an array of text": np.array(["text"]),
+    "an array of records": np.zeros(1, "f8,i4"),
+    "a kind of array": np.ma.zeros(2),
+    "an endless number": 1 << 2000,
+    "another class of a known name": type("Energy", (), {})(),
+    "a range": range(3),
+    "a record of text": Energy(*"abcdefg"),
+}
+
+
+@pytest.mark.parametrize("value", UNKEPT.values(), ids=UNKEPT)
 def test_what_cannot_be_kept_is_said(value):
     with pytest.raises(NotKept):
         packed([1, value])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import pickle
 
 import numpy as np
 import pytest
@@ -12,6 +11,7 @@ from dem_cli.errors import SolverError, UsageError
 from dem_cli.output.folder import locked
 from dem_cli.output.resume.checkpoints import Checkpoints
 from dem_cli.output.resume.kept_objects import all_changing, decoded, encoded
+from dem_cli.output.resume.kept_values import NotKept
 from dem_cli.output.resume.stages import NOTHING_KEPT, Keeping, KeptStages, stage
 
 WHAT = {"the case": "a", "the program": "b"}
@@ -164,8 +164,8 @@ def test_only_data_is_read():
         def __reduce__(self):
             return (print, ("called",))
 
-    with pytest.raises(pickle.UnpicklingError, match="is no data"):
-        decoded(encoded([], Unkept()), [])
+    with pytest.raises(NotKept, match="is not among the records"):
+        encoded([], Unkept())
     sim = Stretched()
     here = all_changing([sim, sim])
     assert here == [sim]
@@ -178,7 +178,45 @@ def test_only_data_is_read():
     assert not hasattr(sim, "later")
 
 
-@pytest.mark.parametrize("about", [None, "5", '{"format', '{"format": 1, "what": 3, "seconds": 1.0}', '{"what": {}}'])
+def test_what_cannot_be_kept_costs_the_run_nothing(tmp_path):
+    """A fault of the program: it is said once, nothing more is kept, and what was kept before stays sound."""
+    said = []
+    checkpoints = Checkpoints(tmp_path, "out", lambda: WHAT, False)
+    stages = KeptStages(checkpoints, lambda kind, record: None, ALL)
+    stages.gives_up = said.append
+    sim = Stretched(stages)
+    first = stretched(sim, 2, lambda record: None)
+    sim.more = object()
+    stages.note("row", 1)
+    assert stretched(sim, 2, lambda record: stages.note("row", record)) == [0.1 * 3, 0.4]
+    assert said == ["builtins.object is not among the records that checkpoints hold"]
+    assert checkpoints.names() == ["1"]
+    checkpoints.close()
+    again = KeptStages(Checkpoints(tmp_path, "out", lambda: WHAT, True), lambda kind, record: None, ALL)
+    assert stretched(Stretched(again), 2, lambda record: None) == first
+    again.kept.close()
+
+
+@pytest.mark.parametrize("loop", [{"number": "x"}, {"seen": 1}, {"number": 1, "__class__": 1}, {3: 1}], ids=repr)
+def test_a_loop_takes_back_what_it_had(tmp_path, monkeypatch, loop):
+    with pytest.raises(Killed):
+        way(tmp_path, 3)
+    read = KeptStages._read
+
+    def other(*words):
+        found = read(*words)
+        return found._replace(loop=loop) if hasattr(found, "loop") else found
+
+    monkeypatch.setattr(KeptStages, "_read", other)
+    with pytest.raises(UsageError, match="is damaged; delete it to start anew"):
+        way(tmp_path, resume=True)
+
+
+ABOUTS = [None, "5", '{"format', '{"format": 1, "what": 3, "seconds": 1.0}', '{"what": {}}', "[" * 100_000]
+ABOUTS += [f'{{"format": 2, "what": {{}}, "seconds": {each}}}' for each in ("NaN", "1e400", "-1.0", '"1"', "9" * 400)]
+
+
+@pytest.mark.parametrize("about", ABOUTS)
 def test_a_folder_that_says_nothing_of_its_run(tmp_path, about):
     """Of a run that was killed, or is under way, as it made it, or damaged by the disk."""
     folder = tmp_path / ".out.dem-stages"
