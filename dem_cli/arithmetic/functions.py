@@ -20,7 +20,8 @@ def _each(function: Callable[..., float], n_arguments: int = 1) -> Callable[...,
     of_all = np.frompyfunc(function, n_arguments, 1)
 
     def of(*values: Any) -> Any:
-        return np.asarray(of_all(*values), float)[()]
+        with np.errstate(all="ignore"):  # Python's own functions raise what is wrong
+            return np.asarray(of_all(*values), float)[()]
 
     return of
 
