@@ -22,7 +22,7 @@ for number, (case, *sets) in enumerate(json.loads(sys.argv[1])):
     try:
         main(args=["run", case, "-q", "-o", str(folder), *words])
     except SystemExit as end:
-        assert not end.code, case
+        assert end.code in (None, 0, 1), case  # 1: a reference, of a run that is longer
     found = {name: hashlib.sha256(raw).hexdigest() for name, raw in datasets(folder).items()}
     found["summary"] = without_times(json.loads((folder / "summary.json").read_text(encoding="utf-8")))
     Path(f"{number}.json").write_text(json.dumps(found), encoding="utf-8")
