@@ -10,7 +10,8 @@ PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 FREE = {"arithmetic", "bench", "cli", "exports", "post", "render", "report", "verify"}
 FUNCTIONS = {
     "arccos", "arccosh", "arcsin", "arcsinh", "arctan", "arctan2", "arctanh", "cbrt", "cosh", "exp", "exp2", "expm1",
-    "float_power", "geomspace", "log", "log10", "log1p", "log2", "logaddexp", "logspace", "power", "sinh", "tan", "tanh",
+    "float_power", "geomspace", "log", "log10", "log1p", "log2", "logaddexp", "logspace", "power", "sinh", "tan",
+    "tanh",
 }  # fmt: skip
 PRODUCTS = {
     "convolve", "correlate", "cov", "corrcoef", "dot", "inner", "matmul", "polyfit", "tensordot", "vdot", "vecdot",
