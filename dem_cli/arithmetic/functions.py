@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+LARGEST = 709.782712893384  # logarithm of the largest number
 DIGITS = 9  # far more than an answer has, far fewer than round-off touches
 
 
@@ -19,13 +20,22 @@ def _each(function: Callable[..., float], n_arguments: int = 1) -> Callable[...,
     of_all = np.frompyfunc(function, n_arguments, 1)
 
     def of(*values: Any) -> Any:
-        return np.asarray(of_all(*values), float)[()]
+        with np.errstate(all="ignore"):  # Python's own functions raise what is wrong
+            return np.asarray(of_all(*values), float)[()]
 
     return of
 
 
+def _exp(x: float) -> float:
+    return math.inf if x > LARGEST else math.exp(x)
+
+
+def _log(x: float) -> float:
+    return math.log(x) if x > 0.0 else -math.inf if x == 0.0 else math.nan
+
+
 arccos, arcsin, arctan, tan = (_each(function) for function in (math.acos, math.asin, math.atan, math.tan))
-exp, expm1, log, log10 = (_each(function) for function in (math.exp, math.expm1, math.log, math.log10))
+exp, log, expm1, log1p, log10 = (_each(function) for function in (_exp, _log, math.expm1, math.log1p, math.log10))
 arctan2, power = _each(math.atan2, 2), _each(math.pow, 2)
 
 

@@ -20,7 +20,10 @@ def solved(matrices: np.ndarray, right: np.ndarray) -> np.ndarray:
     """
     n = matrices.shape[-1]
     shape = np.broadcast_shapes(matrices.shape[:-2], right.shape[:-2])
-    both = [np.broadcast_to(part, shape + part.shape[-2:]).reshape(-1, *part.shape[-2:]) for part in (matrices, right)]
+    both = [
+        np.broadcast_to(part, shape + part.shape[-2:]).reshape(math.prod(shape), *part.shape[-2:])
+        for part in (matrices, right)
+    ]
     rows = np.concatenate(both, axis=2).astype(float)
     each = np.arange(len(rows))
     for k in range(n):
@@ -39,6 +42,20 @@ def solved(matrices: np.ndarray, right: np.ndarray) -> np.ndarray:
 def inverse(matrices: np.ndarray) -> np.ndarray:
     """Inverse of each matrix, (..., n, n). Raises np.linalg.LinAlgError where one is singular."""
     return solved(matrices, np.eye(matrices.shape[-1]))
+
+
+def solved_tridiagonal(diagonal: np.ndarray, beside: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """x of A x = b for one positive definite A of three diagonals; diagonal (n,), beside (n − 1,), b (n, ...)."""
+    pivots, found = diagonal.astype(float), right.astype(float)
+    for i in range(1, len(pivots)):
+        share = beside[i - 1] / pivots[i - 1]
+        pivots[i] -= share * beside[i - 1]
+        found[i] -= share * found[i - 1]
+    for i in range(len(pivots) - 1, -1, -1):
+        if i + 1 < len(pivots):
+            found[i] -= beside[i] * found[i + 1]
+        found[i] /= pivots[i]
+    return found
 
 
 def determinants(matrices: np.ndarray) -> np.ndarray:
@@ -63,8 +80,8 @@ def diagonalised(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     Jacobi's rotations, row by row (Golub and Van Loan, Matrix Computations, 8.5).
     """
-    n = matrices.shape[-1]
-    a = matrices.reshape(-1, n, n).astype(float)
+    n, count = matrices.shape[-1], math.prod(matrices.shape[:-2])
+    a = matrices.reshape(count, n, n).astype(float)
     vectors = np.tile(np.eye(n), (len(a), 1, 1))
     pairs = [(p, q) for p in range(n) for q in range(p + 1, n)]
     for _ in range(SWEEPS):

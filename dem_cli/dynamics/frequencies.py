@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.arithmetic.functions import agreed
+from dem_cli.arithmetic.functions import DIGITS, agreed
 from dem_cli.arithmetic.products import product
 from dem_cli.arithmetic.small_matrices import diagonalised
 from dem_cli.contact.compatibility import compatibility, held_motions
@@ -329,7 +329,7 @@ def _lowest(matrix: csr_array, count: int, settings: FrequencySettings) -> tuple
         values[values < settings.zero * largest] = 0.0
         stop = int((values == 0.0).sum()) + count
         if len(values) >= min(stop, n - 1):
-            return values[:stop], vectors[:, :stop]
+            return agreed(values[:stop]), np.round(vectors[:, :stop], DIGITS) + 0.0  # no −0.0
         asked = max(2 * asked, stop)
 
 

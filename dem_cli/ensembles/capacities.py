@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic import functions
 from dem_cli.engine.dynamic_settings import StatisticsSettings
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.batch import ShakingTrial
@@ -88,7 +89,7 @@ def split(bounds: np.ndarray) -> dict[str, float] | None:
     n = bounds.shape[1]
     if whole.sum() < 2 or n < 2:
         return None
-    logs = np.log(bounds[whole]).mean(axis=2)
+    logs = functions.log(bounds[whole]).mean(axis=2)
     within = float(logs.var(axis=1, ddof=1).mean())
     between = max(float(logs.mean(axis=1).var(ddof=1)) - within / n, 0.0)
     return {"records": math.sqrt(between), "perturbation": math.sqrt(within), "of_records": int(whole.sum())}

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.special import log_ndtr
 
+from dem_cli.arithmetic import functions
 from dem_cli.engine.settings import DEFAULT
 
 
@@ -25,7 +26,7 @@ class Lognormal(NamedTuple):
 
     def share(self, intensities: np.ndarray) -> np.ndarray:
         """Share of capacities below intensities."""
-        return np.exp(log_ndtr(np.log(intensities / self.median) / self.dispersion))
+        return functions.exp(log_ndtr(functions.log(intensities / self.median) / self.dispersion))
 
 
 def fit(lower: np.ndarray, upper: np.ndarray, narrowest: float = DEFAULT.statistics.narrowest) -> Lognormal | None:
@@ -33,15 +34,14 @@ def fit(lower: np.ndarray, upper: np.ndarray, narrowest: float = DEFAULT.statist
 
     None where the bounds leave it open: nothing fell, or all fell at once.
     """
-    with np.errstate(divide="ignore"):
-        a, b = np.log(lower), np.log(upper)
+    a, b = functions.log(lower), functions.log(upper)
     inside = np.isfinite(a) & np.isfinite(b)
     if not np.isfinite(b).any() or not np.isfinite(a).any():
         return None
     known = np.where(np.isfinite(a), a, b)
     middles = np.where(inside, 0.5 * (known + np.where(inside, b, 0.0)), known)
     least, most = math.log(narrowest), math.log(10.0)
-    start = [float(middles.mean()), float(np.clip(np.log(middles.std() + 1e-3), least, most))]
+    start = [float(middles.mean()), float(np.clip(functions.log(middles.std() + 1e-3), least, most))]
 
     def badness(at: np.ndarray) -> float:
         return -float(log_shares((a - at[0]) / math.exp(at[1]), (b - at[0]) / math.exp(at[1])).sum())
@@ -57,5 +57,5 @@ def log_shares(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     flip = a > 0.0
     low, high = np.where(flip, -b, a), np.where(flip, -a, b)
     upper = log_ndtr(high)
-    ratio = np.exp(np.minimum(log_ndtr(low) - upper, 0.0))
-    return np.maximum(upper + np.log1p(-np.minimum(ratio, 1.0 - 1e-16)), -700.0)
+    ratio = functions.exp(np.minimum(log_ndtr(low) - upper, 0.0))
+    return np.maximum(upper + functions.log1p(-np.minimum(ratio, 1.0 - 1e-16)), -700.0)

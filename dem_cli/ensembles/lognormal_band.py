@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import log_ndtr
 
+from dem_cli.arithmetic import functions
 from dem_cli.engine.dynamic_settings import StatisticsSettings
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.lognormal import log_shares
@@ -64,18 +65,17 @@ def confidence_band(
         return None
     likely = _likely(known, statistics.grid)
     tails = [0.5 * (1.0 - confidence), 0.5 * (1.0 + confidence)]
-    medians = np.exp(_quantiles(likely.means, likely.probabilities, tails))
+    medians = functions.exp(_quantiles(likely.means, likely.probabilities, tails))
     rows = likely.probabilities.sum(axis=1)
-    spreads = np.exp(np.interp(tails, np.cumsum(rows) - 0.5 * rows, np.log(likely.dispersions)))
+    spreads = functions.exp(np.interp(tails, np.cumsum(rows) - 0.5 * rows, functions.log(likely.dispersions)))
     scores = [(math.log(a) - likely.means) / likely.dispersions[:, None] for a in at]
-    shares = np.exp(log_ndtr(np.array([_quantiles(score, likely.probabilities, tails) for score in scores])))
+    shares = functions.exp(log_ndtr(np.array([_quantiles(score, likely.probabilities, tails) for score in scores])))
     return Band(tuple(medians.tolist()), tuple(spreads.tolist()), shares[:, 0], shares[:, 1])
 
 
 def _known(bounds: np.ndarray, levels: tuple[float, float]) -> _Known | None:
     """What the bounds say; None where no capacity has two."""
-    with np.errstate(divide="ignore"):
-        logs = np.log(bounds.reshape(-1, 2))
+    logs = functions.log(bounds.reshape(-1, 2))
     pairs, counts = np.unique(logs, axis=0, return_counts=True)
     weights = counts / bounds.shape[1]
     inside = np.isfinite(pairs).all(axis=1)
@@ -97,7 +97,7 @@ def _likely(known: _Known, points: int) -> _Likely:
     for _ in range(2):
         u, logs = _where(u, probabilities.sum(axis=0)), _where(logs, probabilities.sum(axis=1))
         probabilities = _probabilities(known, u, logs)
-    dispersions = np.exp(logs)
+    dispersions = functions.exp(logs)
     return _Likely(known.middle + u * dispersions[:, None], dispersions, probabilities)
 
 
@@ -109,7 +109,7 @@ def _where(values: np.ndarray, weights: np.ndarray, least: float = 1e-5) -> np.n
 
 def _probabilities(known: _Known, u: np.ndarray, logs: np.ndarray) -> np.ndarray:
     """Of each log σ and u = (μ − middle)/σ, (n, m), from likelihood, prior and the size of a cell, σ² du dlog σ."""
-    dispersions = np.exp(logs)[:, None]
+    dispersions = functions.exp(logs)[:, None]
 
     def scores(value: float) -> np.ndarray:
         return (value - known.middle) / dispersions - u
@@ -118,9 +118,10 @@ def _probabilities(known: _Known, u: np.ndarray, logs: np.ndarray) -> np.ndarray
     for (low, high), weight in zip(known.pairs, known.weights):
         likelihood += weight * log_shares(scores(low), scores(high))
     information = _information(*(np.clip(scores(level), -FAR, FAR) for level in known.levels))
-    grouped = 3.0 * logs - np.log(dispersions[:, 0] ** 2 + known.blur)  # σ is resolved down to the levels' distance
-    found = likelihood + 0.5 * np.log(np.maximum(information, 1e-300)) + grouped[:, None]
-    found = np.exp(found - found.max())
+    squares = dispersions[:, 0] ** 2 + known.blur  # σ is resolved down to the levels' distance
+    grouped = 3.0 * logs - functions.log(squares)
+    found = likelihood + 0.5 * functions.log(np.maximum(information, 1e-300)) + grouped[:, None]
+    found = functions.exp(found - found.max())
     return found / found.sum()
 
 
@@ -130,12 +131,13 @@ def _information(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     low, high: scores of the lowest and the highest level, beyond which capacities are censored. Moments of the normal
     distribution between them, and the squared rate of the share beyond each over that share.
     """
-    inside = np.exp(log_shares(low, high))
-    f, g = (np.exp(-0.5 * z**2) / math.sqrt(2.0 * math.pi) for z in (low, high))
-    below, above = f * np.exp(np.log(f) - log_ndtr(low)), g * np.exp(np.log(g) - log_ndtr(-high))
+    inside = functions.exp(log_shares(low, high))
+    f, g = (functions.exp(-0.5 * z**2) / math.sqrt(2.0 * math.pi) for z in (low, high))
+    below = f * functions.exp(functions.log(f) - log_ndtr(low))
+    above = g * functions.exp(functions.log(g) - log_ndtr(-high))
     first, second = f - g, inside + low * f - high * g
     third = 2.0 * first + low**2 * f - high**2 * g
-    fourth = 3.0 * second + low**3 * f - high**3 * g
+    fourth = 3.0 * second + low**2 * low * f - high**2 * high * g
     about_mean = second + below + above
     about_both = third - first + low * below + high * above
     about_spread = fourth - 2.0 * second + inside + low**2 * below + high**2 * above

@@ -91,9 +91,9 @@ def over_disc(piece: np.ndarray, centre: np.ndarray, radius: float) -> tuple[flo
     for start, end in zip(low, high, strict=True):
         shares = _within(start, end, radius)
         enters, leaves = (start + share * (end - start) for share in shares)
-        product = _cross(enters, leaves)
-        doubled += product
-        moments += product / 6.0 * (enters + leaves)
+        twice = _cross(enters, leaves)
+        doubled += twice
+        moments += twice / 6.0 * (enters + leaves)
         for a, b, beyond in ((start, enters, shares[0] > 0.0), (leaves, end, shares[1] < 1.0)):
             if beyond:
                 from_, to = a / np.hypot(*a), b / np.hypot(*b)

@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.small_matrices import solved_tridiagonal
+
 
 class Chain(NamedTuple):
     """One bar, elastic. Element e lies before node e, the last one behind the last node."""
@@ -21,17 +23,11 @@ class Chain(NamedTuple):
 
     def slips(self, openings: np.ndarray) -> np.ndarray:
         """Of the nodes against their blocks [m], (n, ...), from openings of the joints, (n_joints, ...)."""
-        from scipy.linalg import solveh_banded
-
-        bands = np.zeros((2, len(self.bonds)))
-        bands[0] = self.bonds + self.elements[:-1] + self.elements[1:]
-        bands[1, :-1] = -self.elements[1:-1]
         pull = np.zeros((len(self.bonds), *openings.shape[1:]))
         stiffness = self.elements[self.crossing].reshape(-1, *[1] * (openings.ndim - 1))
         np.add.at(pull, self.crossing - 1, stiffness * openings)
         np.add.at(pull, self.crossing, -stiffness * openings)
-        found: np.ndarray = solveh_banded(bands, pull, lower=True)
-        return found
+        return solved_tridiagonal(self.bonds + self.elements[:-1] + self.elements[1:], -self.elements[1:-1], pull)
 
     def stretches(self, openings: np.ndarray, slips: np.ndarray) -> np.ndarray:
         """Elongations of the elements [m], (n + 1, ...)."""

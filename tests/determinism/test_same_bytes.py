@@ -7,10 +7,10 @@ import os
 import subprocess
 import sys
 
-import h5py
 import numpy as np
 import pytest
 from casefiles import CASES
+from casefiles.stored import datasets, without_times
 from engine import block, rectangle, running_wall, simulation, solve, tables
 
 from dem_cli.kernels import records as slot
@@ -25,21 +25,6 @@ def run(folder):
 @pytest.fixture(scope="module")
 def twice(tmp_path_factory):
     return [run(tmp_path_factory.mktemp(name) / "out") for name in ("first", "second")]
-
-
-def datasets(folder) -> dict[str, bytes]:
-    """Raw bytes of everything under /dem, with type and shape."""
-    found = {}
-
-    def collect(name, item):
-        if isinstance(item, h5py.Dataset):
-            value = item[()]
-            raw = value.tobytes() if isinstance(value, np.ndarray) and value.dtype != object else repr(value).encode()
-            found[name] = str((item.dtype, item.shape)).encode() + raw
-
-    with h5py.File(folder / "results.h5", "r") as file:
-        file["dem"].visititems(collect)
-    return found
 
 
 def test_two_runs_have_the_same_results(twice):
@@ -62,13 +47,6 @@ def test_threads_of_the_libraries_change_nothing(tmp_path):
         assert summary["start"]["kind"] == "path"
         found.append((datasets(folder), without_times(summary)))
     assert found[0] == found[1]
-
-
-def without_times(value):
-    """A summary without what depends on the clock."""
-    if isinstance(value, dict):
-        return {key: without_times(item) for key, item in value.items() if "seconds" not in key}
-    return [without_times(item) for item in value] if isinstance(value, list) else value
 
 
 def test_two_runs_have_the_same_effective_case(twice):

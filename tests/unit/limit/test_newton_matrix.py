@@ -1,11 +1,9 @@
-"""Dense fronts and SuperLU solve the same equations; fronts of any pattern of blocks, fixed and held ones too."""
-
-from dataclasses import replace
+"""Dense fronts solve the equations, of any pattern of blocks, fixed and held ones too."""
 
 import numpy as np
 import pytest
 
-from dem_cli.limit.newton_matrix import FrontMatrix, PointRows, SparseMatrix, newton_matrix
+from dem_cli.limit.newton_matrix import NewtonMatrix, PointRows
 from dem_cli.limit.settings import PathSettings
 
 SETTINGS = PathSettings()
@@ -38,7 +36,7 @@ def factors(made, seed):
 @pytest.mark.parametrize(
     ("n_blocks", "n_points", "of_joint"), [(1, 4, 1), (12, 60, 1), (40, 160, 1), (90, 700, 1), (12, 120, 4)]
 )
-def test_both_ways_solve_the_same_equations(dimension, n_blocks, n_points, of_joint):
+def test_fronts_solve_the_equations(dimension, n_blocks, n_points, of_joint):
     made = points(dimension, n_blocks, n_points, n_blocks, of_joint)
     right = np.random.default_rng(1).normal(size=made.n_columns)
     right[:2] = 0.0  # held
@@ -49,29 +47,31 @@ def test_both_ways_solve_the_same_equations(dimension, n_blocks, n_points, of_jo
             for p, factor in enumerate(given):
                 to = made.columns[p].ravel()
                 dense[np.ix_(to, to)] += factor * np.outer(made.rows[p, a].ravel(), made.rows[p, b].ravel())
-    for matrix in (FrontMatrix(made, SETTINGS), SparseMatrix(made, elastic, SETTINGS)):
-        matrix.factorised(elastic)
-        found = np.zeros(made.n_columns + 1)
-        found[matrix.order] = matrix.factorised(stiff).solve(right[matrix.order])
-        touched = np.append(np.abs(dense[:-1, :-1]).sum(axis=1) > 0.0, False)
-        off = (dense @ found)[touched] - np.append(right, 0.0)[touched]
-        assert np.abs(off).max() < 1e-6 * np.abs(right).max()
-        assert (found[:2] == 0.0).all()
-
-
-def test_fronts_are_those_of_larger_structures():
-    made = points(2, 12, 20, 0)
-    assert isinstance(newton_matrix(made, factors(made, 0), SETTINGS), SparseMatrix)
-    assert isinstance(newton_matrix(made, factors(made, 0), replace(SETTINGS, in_fronts=36)), FrontMatrix)
+    matrix = NewtonMatrix(made, SETTINGS)
+    matrix.factorised(elastic)
+    found = np.zeros(made.n_columns + 1)
+    found[matrix.order] = matrix.factorised(stiff).solve(right[matrix.order])
+    touched = np.append(np.abs(dense[:-1, :-1]).sum(axis=1) > 0.0, False)
+    off = (dense @ found)[touched] - np.append(right, 0.0)[touched]
+    assert np.abs(off).max() < 1e-6 * np.abs(right).max()
+    assert (found[:2] == 0.0).all()
 
 
 def test_points_are_summed_first_where_joints_in_space_have_several():
-    assert FrontMatrix(points(3, 12, 120, 0, 4), SETTINGS).by_joints
-    assert not FrontMatrix(points(3, 12, 120, 0), SETTINGS).by_joints
-    assert not FrontMatrix(points(2, 12, 120, 0, 4), SETTINGS).by_joints
+    assert NewtonMatrix(points(3, 12, 120, 0, 4), SETTINGS).by_joints
+    assert not NewtonMatrix(points(3, 12, 120, 0), SETTINGS).by_joints
+    assert not NewtonMatrix(points(2, 12, 120, 0, 4), SETTINGS).by_joints
 
 
 def test_a_matrix_without_anything_is_singular():
     made = points(2, 12, 20, 0)
     with pytest.raises(RuntimeError, match="singular"):
-        FrontMatrix(made, SETTINGS).factorised([0.0 * one for one in factors(made, 0)])
+        NewtonMatrix(made, SETTINGS).factorised([0.0 * one for one in factors(made, 0)])
+
+
+def test_a_structure_without_contact_points():
+    made = points(2, 3, 0, 0)
+    matrix = NewtonMatrix(made, SETTINGS)
+    assert sorted(matrix.order) == list(range(9))
+    with pytest.raises(RuntimeError, match="singular"):
+        matrix.factorised(factors(made, 0))

@@ -1,0 +1,69 @@
+"""What enters a run goes without BLAS, LAPACK and NumPy's functions for one processor: dem_cli/arithmetic has them."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
+# Rooms that only show, write for others or measure, and the one that replaces what is forbidden.
+FREE = {"arithmetic", "bench", "cli", "exports", "post", "render", "report", "verify"}
+FUNCTIONS = {
+    "arccos", "arccosh", "arcsin", "arcsinh", "arctan", "arctan2", "arctanh", "cbrt", "cosh", "exp", "exp2", "expm1",
+    "float_power", "geomspace", "log", "log10", "log1p", "log2", "logaddexp", "logspace", "power", "sinh", "tan",
+    "tanh",
+}  # fmt: skip
+PRODUCTS = {
+    "convolve", "correlate", "cov", "corrcoef", "dot", "inner", "matmul", "polyfit", "tensordot", "vdot", "vecdot",
+    "matvec", "vecmat",
+}  # fmt: skip
+IN_LINALG = {"norm", "LinAlgError"}  # norm: along an axis
+EXEMPT = {  # file and name: why
+    ("dynamics/frequencies.py", "np.linalg.eigh"): "rounded where they leave it",
+    ("dynamics/frequencies.py", "scipy.sparse.linalg"): "rounded where they leave it",
+    ("limit/sparse_factors.py", "scipy.sparse.linalg"): "for the order of elimination alone",
+    ("motion/synthetic.py", "np.exp"): "of complex numbers: by the C library",
+}
+SPARSE = {  # files with `@` of sparse matrices, which SciPy adds up itself
+    "dynamics/frequencies.py", "dynamics/rocking_stiffness.py", "engine/rigid_joints.py", "limit/associated.py",
+    "limit/collapse_states.py", "limit/cone.py", "limit/elastic.py", "limit/frontal_program.py", "limit/interior.py",
+    "limit/joint_forces.py", "limit/matrices.py", "limit/program.py", "limit/snapshot.py",
+}  # fmt: skip
+SOURCES = sorted(
+    path
+    for path in PACKAGE.rglob("*.py")
+    if path.relative_to(PACKAGE).parts[0] not in FREE and "kernels" not in path.relative_to(PACKAGE).parts
+)
+
+
+def forbidden(tree: ast.Module) -> set[str]:
+    """Names that give other last digits on other processors, and `@`."""
+    found = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
+            found.add("@")
+        elif isinstance(node, ast.ImportFrom) and node.module in ("scipy.linalg", "scipy.sparse.linalg"):
+            found.add(node.module)
+        elif isinstance(node, ast.Attribute):
+            room, name = ast.unparse(node.value), node.attr
+            wrong = name in FUNCTIONS | PRODUCTS if room == "np" else room == "np.linalg" and name not in IN_LINALG
+            found |= {f"{room}.{name}"} if wrong else set()
+        elif isinstance(node, ast.Call) and ast.unparse(node.func) == "np.linalg.norm":
+            found |= set() if any(word.arg == "axis" for word in node.keywords) else {"np.linalg.norm without an axis"}
+    return found
+
+
+def test_nothing_depends_on_the_processor():
+    wrong = {}
+    for path in SOURCES:
+        name = path.relative_to(PACKAGE).as_posix()
+        allowed = {what for file, what in EXEMPT if file == name} | ({"@"} if name in SPARSE else set())
+        found = forbidden(ast.parse(path.read_text(encoding="utf-8"))) - allowed
+        wrong |= {name: sorted(found)} if found else {}
+    assert not wrong, f"use dem_cli/arithmetic in the place of {wrong}"
+
+
+def test_the_tables_name_nothing_that_is_gone():
+    for name in SPARSE | {file for file, _ in EXEMPT}:
+        found = forbidden(ast.parse((PACKAGE / name).read_text(encoding="utf-8")))
+        assert found >= {what for file, what in EXEMPT if file == name} | ({"@"} if name in SPARSE else set()), name
