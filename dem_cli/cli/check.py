@@ -133,17 +133,15 @@ def unit(direction: Sequence[float]) -> np.ndarray:
 
 def rows(case: Case, model: Model, applied: Sequence[AppliedLoad] = ()) -> list[tuple[str, str]]:
     """What the case is made of: label and text of each line."""
-    from dem_cli.output.paraview.vertices import rest_vertices
+    from dem_cli.output.paraview.vertices import size_in_words
 
     free = ~model.fixed
-    corners = rest_vertices(model)
-    size = " × ".join(f"{length:.4g} m" for length in corners.max(axis=0) - corners.min(axis=0))
     loads = [f"{sum(load.kind == kind for load in case.load)} {kind}" for kind in ("dead", "live")]
     return [
         ("analysis", case.analysis.kind),
         *_imports(case),
         ("blocks", f"{model.n_blocks:,} ({model.fixed.sum():,} fixed), {len(model.vertices):,} corners"),
-        ("size", size),
+        ("size", f"{size_in_words(model)} (free blocks)"),
         ("mass", f"{model.masses[free].sum():.6g} kg (free blocks), {len(case.materials)} material(s)"),
         ("joint laws", ", ".join(f"{name} ({joint.law})" for name, joint in case.joints.items())),
         *_drawn(case),

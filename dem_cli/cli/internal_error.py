@@ -14,6 +14,7 @@ from pathlib import Path
 import click
 
 from dem_cli.cli.options import STANDARD_INPUT, STDIN, given
+from dem_cli.errors import OutputError
 from dem_cli.version import __version__
 
 CODE = 70  # EX_SOFTWARE of sysexits.h
@@ -26,10 +27,10 @@ def report(error: Exception, words: Sequence[str]) -> int:
     if os.environ.get(TRACEBACK, "") not in ("", "0"):
         traceback.print_exception(error)
     if isinstance(error, MemoryError):
-        click.echo(
-            f"error: not enough memory: {error or 'no more could be had'}; fewer blocks or frames need less", err=True
-        )
-        return 3
+        from dem_cli.cli.lack_of_memory import lack_of_memory
+
+        click.echo(f"error: {lack_of_memory(error)}", err=True)
+        return OutputError.exit_code
     lines = [f"internal error: {summary(error)}", "This is a fault of dem, not of the case."]
     try:
         file = write(error, words)

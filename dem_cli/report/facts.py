@@ -11,7 +11,7 @@ from dem_cli.model.model import Model
 from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP, DOUBTFUL_REWEIGHTING, smallest_edge
 from dem_cli.output.ending import ending_words
 from dem_cli.output.layout import IN_SECONDS
-from dem_cli.output.paraview.vertices import rest_vertices
+from dem_cli.output.paraview.vertices import size_in_words
 from dem_cli.output.reader import Results
 from dem_cli.post import style
 
@@ -197,16 +197,14 @@ def _balance(summary: Mapping[str, Any], results: Results | None) -> list[Soundn
 def model_rows(model: Model, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Size, mass and number of everything."""
     free = ~model.fixed
-    corners = rest_vertices(model)[free[model.vertex_blocks]]
-    sides = " × ".join(_metres(float(side)) for side in np.ptp(corners, axis=0)) if free.any() else "–"
     depth = sorted({f"{value:.3g}" for value in model.thickness[free].tolist()}, key=float)
     held = int(model.restrained.any(axis=1).sum())
     restrained = f", {held:,} with motions that are held" if held else ""
     rows = [
         ("blocks", f"{model.n_blocks:,}, {int(model.fixed.sum()):,} of them fixed{restrained}"),
         ("joints", f"{summary['joints']:,}, {summary['contacts']:,} contact points" if "contacts" in summary else "–"),
-        ("mass that can move", f"{float(model.masses[free].sum()):.6g} kg"),
-        ("width × height" if model.dimension == 2 else "size", sides),
+        ("size", f"{size_in_words(model)} (free blocks)"),
+        ("mass", f"{float(model.masses[free].sum()):.6g} kg (free blocks)"),
     ]
     if model.dimension == 2 and depth:
         rows.append(("thickness", f"{depth[0]} m" if len(depth) == 1 else f"{depth[0]} to {depth[-1]} m"))

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive
 from dem_cli.geometry import polygon
@@ -78,19 +78,39 @@ class OpeningArch(CaseModel):
         return SHAPE_JOINTS[shape](arch)
 
 
+def _height_optional(schema: dict[str, Any]) -> None:
+    """In the JSON Schema: who gives a circle need not give its height."""
+    schema["required"] = [key for key in schema["required"] if key != "height"]
+
+
 class Opening(CaseModel):
     """A rectangular hole; blocks that it cuts keep what is left of them as rectangles."""
+
+    model_config = ConfigDict(json_schema_extra=_height_optional)
 
     x: NonNegative = Field(description="left edge, from the left end of the wall [m]", examples=[0.8])
     y: NonNegative = Field(description="lower edge, from the foot of the wall [m]", examples=[0.0])
     width: Positive = Field(description="width [m]", examples=[0.9])
-    height: Positive = Field(description="height, below an arch that of its jambs [m]", examples=[2.0])
+    height: Positive = Field(
+        description="height, below an arch that of its jambs [m]; left out where the arch is a circle: the width",
+        examples=[2.0],
+    )
     lintel: Lintel | None = Field(
         None, description="a block over the opening; default: none", examples=[{"height": 0.2, "bearing": 0.15}]
     )
     arch: OpeningArch | None = Field(
         None, description="an arch over the opening; default: none", examples=[{"voussoirs": 9, "ring": 0.3}]
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _as_high_as_wide(cls, data: Any) -> Any:
+        """A circle has one measure; where that is wrong, nothing is said of a height that nobody gave."""
+        arch = data.get("arch") if isinstance(data, dict) else None
+        if not isinstance(arch, dict) or arch.get("shape") != "circle":
+            return data
+        width = data.get("width")
+        return {"height": width if isinstance(width, int | float) and width > 0.0 else 1.0} | data
 
     @model_validator(mode="after")
     def _consistent(self) -> Opening:

@@ -9,8 +9,11 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from dem_cli import api
+from dem_cli.cli.check import rows
 from dem_cli.cli.main import main
 from dem_cli.cli.new import COMPANIONS, TEMPLATE_KINDS, TEMPLATES
+from dem_cli.report.facts import model_rows
 from dem_cli.structures.registry import GENERATORS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -99,10 +102,19 @@ def test_check_prints_the_model():
     rows = {label: text.strip() for label, text in rows.items()}
     assert rows["analysis"] == "pushover"
     assert rows["blocks"] == "23 (1 fixed), 92 corners"
-    assert rows["size"] == "3 m × 1.5 m"
+    assert rows["size"] == "3 m × 1.2 m (free blocks)"
     assert rows["mass"] == "3960 kg (free blocks), 1 material(s)"
     assert rows["joint laws"] == "dry (coulomb)"
     assert rows["point loads"] == "none"
+
+
+def test_a_report_means_the_same_by_size():
+    """One had the base in it, the other not: 3 m × 1.5 m and 3 m × 1.2 m of the same wall."""
+    loaded = api.load_case(TEMPLATES / "wall.toml")
+    model = api.build_model(loaded)
+    checked, reported = dict(rows(loaded.case, model)), dict(model_rows(model, {}))
+    assert checked["size"] == reported["size"] == "3 m × 2.4 m (free blocks)"
+    assert checked["mass"].startswith(reported["mass"])
 
 
 def test_check_warns_on_stderr():

@@ -74,7 +74,7 @@ def test_a_drawing_stands_upright_in_space_and_its_case_is_written_whole(tmp_pat
     path = case(tmp_path, f'file = "facade.dxf"\nthickness = 0.4\n{layers}')
     checked = dem("check", path)
     assert (checked.exit_code, checked.stderr) == (0, "")
-    assert "size            4.4 m × 1 m × 2.2 m" in checked.stdout
+    assert "size            4 m × 0.4 m × 2 m (free blocks)" in checked.stdout
     mass = (4.0 * 2.0 - 1.2 * 1.4 - 1.6 * 0.2) * 0.4 * 2400.0 + 1.6 * 0.2 * 0.4 * 700.0
     assert f"mass            {mass:.6g} kg" in checked.stdout
     assert dem("run", path, "-o", str(tmp_path / "run"), "--quiet").exit_code == 0

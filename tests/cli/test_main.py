@@ -207,8 +207,39 @@ def test_want_of_memory_is_no_fault(command, monkeypatch):
 
     monkeypatch.delenv("DEM_TRACEBACK")
     result = command(body)
-    said = "error: not enough memory: unable to allocate 64 GiB; fewer blocks or frames need less\n"
+    said = (
+        "error: not enough memory for what was asked for: unable to allocate 64 GiB; fewer blocks or frames need less\n"
+    )
     assert (result.exit_code, result.stderr) == (3, said)
+
+
+@pytest.mark.parametrize(
+    ("place", "said"),
+    [
+        (
+            "dem_cli.contact.assemble.empty_contacts",
+            "the joints between blocks (12 blocks): no more could be had; fewer",
+        ),
+        (
+            "dem_cli.structures.wall_blocks._course",
+            "the blocks: no more could be had; fewer, larger blocks need less\n",
+        ),
+        ("dem_cli.engine.simulation.Simulation.save", "the contact points that are stepped (12 blocks): no more"),
+    ],
+)
+def test_want_of_memory_says_what_it_was_for_and_what_needs_less(place, said, monkeypatch, tmp_path):
+    def full(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr(place, full)
+    path = tmp_path / "wall.toml"
+    path.write_text(
+        "[materials.stone]\ndensity = 2300.0\n[joints.dry]\nfriction = 0.6\n[[structure]]\nkind = 'wall'\n"
+        "block = [0.6, 0.3]\ncourses = 3\nblocks_per_course = 3\n[analysis]\nkind = 'pushover'\n"
+    )
+    result = CliRunner().invoke(main, ["check", str(path)])
+    assert result.exit_code == 3
+    assert f"error: not enough memory for {said}" in result.stderr
 
 
 def in_bash(line: str) -> subprocess.CompletedProcess:

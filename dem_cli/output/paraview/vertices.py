@@ -20,6 +20,13 @@ def rest_vertices(model: Model) -> np.ndarray:
     return model.centroids[model.vertex_blocks] + model.vertices
 
 
+def size_in_words(model: Model) -> str:
+    """Sides of the box around the blocks that can move, undeformed: "3 m × 1.5 m"; of all blocks where none can."""
+    free = ~model.fixed
+    corners = rest_vertices(model)[free[model.vertex_blocks] | ~free.any()]
+    return " × ".join(f"{side:.4g} m" for side in np.ptp(corners, axis=0).tolist())
+
+
 def vertex_velocities(model: Model, vertices: np.ndarray, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
     """Velocity of each corner, (n_vertices, d), from the generalised velocities of the blocks."""
     blocks, d = model.vertex_blocks, model.dimension

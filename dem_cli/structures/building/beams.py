@@ -46,7 +46,7 @@ def _check_beam(bed: Bed, sides: tuple[RoomSide, RoomSide], beam: np.ndarray, n:
     walls = tuple(bed.wall(side) for side in sides)
     met = bed.wall_under(beam, walls)
     if met is not None:
-        one, other = bed.floor.on
+        one, other = bed.floor.bears_on
         message = f"beam {n + 1}, square to '{one}', would run into wall '{bed.plan.axes[met].name}' before it reaches "
         message += f"'{other}'; {_advice(bed, sides)}"
         raise KeyProblem(message, "floors", bed.number, "on")

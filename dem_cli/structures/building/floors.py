@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations, islice
 
 import numpy as np
 
@@ -23,7 +24,7 @@ def floors_of(building: Building, plan: Plan) -> Floors:
     for i, floor in enumerate(building.floors):
         on = [building.number(name) for name in floor.on]
         room = _room(plan, rooms, floor, on, i)
-        bearing = _bearings(building, floor, on, i)
+        bearing = _bearings(building, floor, on[: len(floor.bears_on)], i)
         layer = _layer(building, floor, i)
         _check_walls(building, floor, i, layer)
         lay = lay_beams if floor.kind == "beams" else _plate
@@ -52,13 +53,27 @@ def _room(plan: Plan, rooms: Sequence[Room], floor: Floor, on: Sequence[int], i:
         return fitting[0]
     names = ", ".join(f"'{name}'" for name in floor.on)
     if fitting:
-        message = f"{len(fitting)} rooms are bounded by {names}: name more of the walls of the one that is meant"
-        raise KeyProblem(message, "floors", i, "on")
+        raise KeyProblem(
+            f"{len(fitting)} rooms are bounded by {names}: {_advice(plan, fitting, floor)}", "floors", i, "on"
+        )
     if len(on) == 2 and not any(set(on) <= set(junction.walls) for junction in plan.junctions):
         joined = any(wall in junction.walls for junction in plan.junctions for wall in on)
         if not (rooms and joined):
             return between(plan, *on)
     raise KeyProblem(f"no room is bounded by {names}; give a floor for each room", "floors", i, "on")
+
+
+def _advice(plan: Plan, rooms: Sequence[Room], floor: Floor) -> str:
+    """Of each of these rooms the fewest walls that tell it from the others, to be named beside those of the floor."""
+    walls = [{plan.axes[side.wall].name for side in room if side.wall is not None} - {*floor.on} for room in rooms]
+    found = []
+    for own in walls:
+        tried = (names for count in (1, 2) for names in combinations(sorted(own), count))
+        telling = (names for names in tried if sum(own >= {*names} for own in walls) == 1)
+        found += [" and ".join(f"'{name}'" for name in names) for names in islice(telling, 1)]
+    which = f"; {', or '.join(sorted(found))}" if found else ""
+    after = "; beams bear on the first two alone" if floor.kind == "beams" else ""
+    return f"name more of the walls of the one that is meant{which}{after}"
 
 
 def _bearings(building: Building, floor: Floor, on: Sequence[int], i: int) -> dict[int, float]:
@@ -97,7 +112,7 @@ def _check_walls(building: Building, floor: Floor, i: int, layer: tuple[float, f
     """Raises KeyProblem where a wall does not reach up to a floor, has a gable there, or a plate meets a lintel."""
     low, high, courses = layer
     small = SMALL * building.block[1]
-    for k, name in enumerate(floor.on):
+    for k, name in enumerate(floor.bears_on):
         wall = building.walls[building.number(name)]
         top = float(building.levels[wall.courses or building.courses])
         if low > top + small:

@@ -66,7 +66,9 @@ class Floor(CaseModel):
     id: Name = Field(description="name of the plate, first part of the names of the beams", examples=["attic"])
     z: NonNegative = Field(description="height of its lower face above the foot of the walls [m]", examples=[2.5])
     on: Annotated[tuple[Name, ...], Field(min_length=1)] = Field(
-        description="walls that it bears on; of beams the two that they reach from and to", examples=[["left", "right"]]
+        description="walls that it bears on; of beams the two that they reach from and to, and after these others of "
+        "their room where these two bound more than one",
+        examples=[["left", "right"]],
     )
     kind: Literal["rigid", "beams"] = Field(
         "rigid", description="rigid: one plate; beams: square to the first wall in on, each a block"
@@ -87,6 +89,11 @@ class Floor(CaseModel):
     spacing: Positive = Field(0.6, description="of beams, from middle to middle, about [m]")
     width: Positive = Field(0.15, description="of beams [m]")
     gap: NonNegative = Field(0.02, description="of a plate, to walls of the room that it does not bear on [m]")
+
+    @property
+    def bears_on(self) -> tuple[str, ...]:
+        """The walls that carry it."""
+        return self.on[:2] if self.kind == "beams" else self.on
 
     @model_validator(mode="after")
     def _keys_of_its_kind(self) -> Floor:
@@ -207,8 +214,8 @@ def _check_floor(building: Building, floor: Floor, i: int) -> None:
             raise KeyProblem(f"there is no wall '{name}' (walls: {listed})", "floors", i, "on", k)
     if len(set(floor.on)) < len(floor.on):
         raise KeyProblem("a wall is named twice", "floors", i, "on")
-    if floor.kind == "beams" and len(floor.on) != 2:
-        message = f"{len(floor.on)} walls; beams reach from one wall to another: give two"
+    if floor.kind == "beams" and len(floor.on) < 2:
+        message = "one wall; beams reach from one wall to another: give two"
         raise KeyProblem(message, "floors", i, "on")
     near = building.levels[np.abs(building.levels - floor.z).argmin()]
     if abs(near - floor.z) > 1e-6 * building.block[1]:

@@ -47,6 +47,20 @@ def test_floors_that_cannot_lie_there(what):
         Built(walls, floors=floors)
 
 
+def test_beams_parallel_to_a_cross_wall():
+    """`name more of the walls` was answered by `give two`: such a floor could not be told at all."""
+    divided = [*SQUARE, wall("s", (2.5, 0), (2.5, 4)), wall("t", (3.8, 0), (3.8, 4))]
+    with pytest.raises(CaseError, match="meant; 'b', or 'd', or 's' and 't'; beams bear on the first two alone"):
+        Built(divided, floors=[floor("ac")])
+    found = Built(divided, floors=[floor("acd"), floor("acst", "g"), floor("acb", "h")]).model
+    beams = {
+        name: found.centroids[k, 0] for k, name in enumerate(found.block_ids) if name[:4] in ("b-f-", "b-g-", "b-h-")
+    }
+    assert {name[2] for name, x in beams.items() if x < 2.5} == {"f"}
+    assert {name[2] for name, x in beams.items() if 2.5 < x < 3.8} == {"g"}
+    assert {name[2] for name, x in beams.items() if x > 3.8} == {"h"}
+
+
 def test_the_walls_that_a_message_names_carry_beams():
     with pytest.raises(CaseError) as refused:
         Built(SPLAYED, floors=[floor("ac")])

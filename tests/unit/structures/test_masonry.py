@@ -11,6 +11,7 @@ from synthetic.skins import free_volume, model_of, open_area
 
 from dem_cli.geometry import polygon
 from dem_cli.structures import arch
+from dem_cli.structures.openings import Opening
 from dem_cli.structures.wall import Wall
 from dem_cli.structures.wall_blocks import build
 
@@ -176,6 +177,19 @@ def test_corners_of_voussoirs_close_to_a_bed_joint_lie_on_it():
     """Rings 0.30 m deep whose crown is 1.85 m high, under a bed joint at 1.86 m: 10 mm are 3 % of a course."""
     crown = next(b for b in free(openings=[DOOR], courses=9, block=[0.5, 0.31]) if b.id == "arch-1-5").parts[0]
     assert np.sort(crown[:, 1])[2:] == pytest.approx([1.86, 1.86], abs=1e-15)
+
+
+def test_a_round_opening_needs_no_height():
+    """Its width is its diameter; a height was asked for that could be nothing else."""
+    keys = {"x": 2.0, "y": 1.0, "width": 0.8, "arch": {"shape": "circle", "voussoirs": 9, "ring": 0.2}}
+    assert Opening.model_validate(keys) == Opening.model_validate(keys | {"height": 0.8})
+    assert Opening.model_json_schema()["required"] == ["x", "y", "width"]
+    for width, said in ((-1.0, {"width"}), ("a", {"width"})):
+        with pytest.raises(ValidationError) as caught:
+            Opening.model_validate(keys | {"width": width})
+        assert {error["loc"][0] for error in caught.value.errors()} == said
+    with pytest.raises(ValidationError, match="Field required"):
+        Opening.model_validate(keys | {"arch": {"voussoirs": 9, "ring": 0.2}})
 
 
 def test_a_stepped_gable_has_the_area_of_its_triangle():
