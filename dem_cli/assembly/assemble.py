@@ -24,6 +24,7 @@ from dem_cli.case.base import KeyProblem
 from dem_cli.case.wording import show, unknown_name
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
 from dem_cli.geometry.rotation import moments
+from dem_cli.input_limits import MOST_BLOCKS
 from dem_cli.model.blocks import Block, corners_of
 from dem_cli.model.bodies import BodyArrays, bodies_of
 from dem_cli.model.following_loads import FollowingLoads
@@ -94,6 +95,9 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
             keys = error.keys if isinstance(error, KeyProblem) else ()
             problems.append(CaseProblem(("structure", i, *keys), str(error)))
             continue
+        if len(blocks) + len(generated) > MOST_BLOCKS:
+            problems.append(CaseProblem(("structure", i), f"more than {MOST_BLOCKS:,} blocks; no case may have more"))
+            break
         local[parameters.id] = generated
         blocks += place(generated, parameters, ("structure", i), case.dimension)
     for i, table in enumerate(case.block):

@@ -19,6 +19,7 @@ from dem_cli.contact.layout import PointLayout
 from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.errors import CaseProblem
 from dem_cli.geometry import polygon
+from dem_cli.geometry.crowding import crowd
 from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.rotation import unturned
 from dem_cli.links.matrices import each
@@ -58,6 +59,9 @@ class Neighbours(NamedTuple):
 def problems(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     """Everything that makes the geometry unusable; `blocks` in the order of the model."""
     found = shape_problems(model, blocks)
+    if found:
+        return found
+    found = crowd_problems(model, blocks)
     if found:
         return found
     near = _neighbours(model)
@@ -249,20 +253,34 @@ def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     return found
 
 
+def crowd_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
+    """Blocks that lie in the same place by the hundred: too many to compare each with each."""
+    found = crowd(undeformed(model), model.part_starts)
+    if found is None:
+        return []
+    first, second = blocks[model.part_blocks[found[0]]], blocks[model.part_blocks[found[1]]]
+    message = f"block '{second.id}' lies where block '{first.id}' does, and so do {len(found) - 2} others at least"
+    return [CaseProblem(second.path, f"{message}; blocks lie beside each other")]
+
+
 def overlap_problems(model: Model, blocks: Sequence[Block], near: Neighbours, note: str = "") -> list[CaseProblem]:
     """Two blocks in the same place, the deepest first; two fixed ones may. `note` ends each message."""
     a, b = near.blocks.T
     wrong = (near.separation < -DEEPEST_OVERLAP * near.scale) & (a != b) & ~(model.fixed[a] & model.fixed[b])
     found, seen = [], set()
+    rest = 0
     for k in np.nonzero(wrong)[0][np.argsort(near.separation[wrong], kind="stable")]:
         pair = tuple(sorted(near.blocks[k].tolist(), key=lambda i: (blocks[i].path[:1] == ("block",), blocks[i].path)))
         if pair in seen:
             continue
         seen.add(pair)
+        if len(found) == SHOWN_MISTAKES:
+            rest += 1
+            continue
         first, second = (blocks[i] for i in pair)
         depth = f"{-near.separation[k]:.3g} m{NOTES[model.dimension].overlap(model, near.parts[k])}"
         found.append((second.path, f"block '{second.id}' overlaps block '{first.id}' by {depth}{note}"))
-    return _first_few(found)
+    return _first_few(found, rest)
 
 
 def compound_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -> list[CaseProblem]:
@@ -343,10 +361,10 @@ def _nearest_pair(model: Model, inside: np.ndarray) -> tuple[int, int, float]:
     return i, j, float(distance[j])
 
 
-def _first_few(found: Sequence[tuple[tuple, str]]) -> list[CaseProblem]:
-    """The first mistakes of a sort; the last one reported says how many more there are."""
+def _first_few(found: Sequence[tuple[tuple, str]], unsaid: int = 0) -> list[CaseProblem]:
+    """The first mistakes of a sort; the last one reported says how many more there are, with those not put in words."""
     shown = [CaseProblem(path, message) for path, message in found[:SHOWN_MISTAKES]]
-    rest = len(found) - SHOWN_MISTAKES
+    rest = len(found) - SHOWN_MISTAKES + unsaid
     if rest > 0:
         last = shown[-1]
         shown[-1] = CaseProblem(last.path, f"{last.message}; and {rest} more of this sort")

@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, model_validator
 
 from dem_cli.case.vector import VectorLength
+from dem_cli.input_limits import MOST_BLOCKS
 
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
@@ -145,6 +146,12 @@ class RandomStructure(StructureBase):
     def drawn_from(self, seed: int) -> RandomStructure:
         """With the seed of the case where it has none of its own."""
         return self if self.seed is not None else self.model_copy(update={"seed": seed})
+
+
+def check_count(count: float, *keys: str | int) -> None:
+    """Raises KeyProblem at a key where a structure would have more blocks than any may have."""
+    if count > MOST_BLOCKS:
+        raise KeyProblem(f"{count:.3g} blocks are too many; must be at most {MOST_BLOCKS:,}", *keys)
 
 
 def as_tuples(value: Any) -> Any:

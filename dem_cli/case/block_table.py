@@ -8,9 +8,10 @@ from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Name, Pair, Positive, Vector
 from dem_cli.case.wording import show
+from dem_cli.input_limits import MOST_CORNERS
 
-Corners = Annotated[tuple[Vector, ...], Field(min_length=3)]
-Face = Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(min_length=3)]
+Corners = Annotated[tuple[Vector, ...], Field(min_length=3, max_length=MOST_CORNERS)]
+Face = Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(min_length=3, max_length=MOST_CORNERS)]
 Faces = Annotated[tuple[Face, ...], Field(min_length=4)]
 TETRAHEDRON = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 TETRAHEDRON_FACES = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
@@ -45,7 +46,7 @@ class BlockTable(CaseModel):
         description="of each face the numbers of its corners, from 0, around it; default: those of the hull",
         examples=[TETRAHEDRON_FACES],
     )
-    polygon: Annotated[tuple[Pair, ...], Field(min_length=3)] | None = Field(
+    polygon: Annotated[tuple[Pair, ...], Field(min_length=3, max_length=MOST_CORNERS)] | None = Field(
         default=None,
         description="instead of vertices: corners [x, z] of a prism, convex, in any order [m]",
         examples=[[[0.0, 0.0], [1.0, 0.0], [1.0, 0.3], [0.0, 0.3]]],

@@ -24,6 +24,7 @@ from dem_cli.case.wording import (
     unknown_name,
 )
 from dem_cli.errors import CaseProblem, KeyPath
+from dem_cli.input_limits import MOST_MISTAKES
 
 
 class ErrorLocation(NamedTuple):
@@ -43,7 +44,7 @@ def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str
     """One problem per mistake. A value that fits no member of a union is one mistake, not one per member."""
     found: list[CaseProblem] = []
     unions: dict[KeyPath, list[tuple[ErrorLocation, Any]]] = {}
-    errors = error.errors(include_url=False)
+    errors = error.errors(include_url=False)[:MOST_MISTAKES]
     within = {item["loc"][:k] for item in errors for k in range(len(item["loc"]))}
     for item in errors:
         if item["type"] == "too_short" and item["loc"] in within:  # for want of items that are wrong themselves
@@ -70,7 +71,9 @@ def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str
             found.append(CaseProblem(path, not_allowed(value_at(data, path), kinds)))
     meant = {(*p.path[:-1], name) for p in found if p.at_key for name in re.findall("did you mean '(.*)'", p.message)}
     found = [p for p in found if p.path not in meant or not p.message.startswith("missing")]
-    return first_of_list(list(dict.fromkeys(found)))
+    found = first_of_list(list(dict.fromkeys(found)))
+    rest = error.error_count() - MOST_MISTAKES
+    return [*found, CaseProblem((), f"and {rest:,} more mistakes")] if rest > 0 else found
 
 
 def first_of_list(found: Sequence[CaseProblem]) -> list[CaseProblem]:

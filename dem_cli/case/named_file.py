@@ -8,6 +8,8 @@ from pathlib import Path
 
 from pydantic import ValidationInfo
 
+from dem_cli.input_limits import DRAWING_BYTES, UnreadableInput, read_bounded, what_else
+
 
 def absolute_path(file: str, info: ValidationInfo) -> str:
     """A path of a case that was loaded, which no longer depends on where the case lies."""
@@ -21,15 +23,15 @@ def absolute_path(file: str, info: ValidationInfo) -> str:
 def digest(file: str | Path) -> str:
     """What a file holds, in short (SHA-256); "" where it cannot be read: what is wrong is said by what reads it."""
     try:
-        return hashlib.sha256(Path(file).read_bytes()).hexdigest()
-    except OSError:
+        return hashlib.sha256(read_bounded(Path(file), DRAWING_BYTES)).hexdigest()
+    except (OSError, UnreadableInput):
         return ""
 
 
 def missing_file(path: Path, what: str) -> str:
     """`no such file: /x/east.csv, did you mean 'east.csv'?`; what: what it should be, such as "a record"."""
-    if path.is_dir():
-        return f"{path} is a folder; {what} is a file"
+    if path.exists():
+        return f"{path} is {what_else(path)}; {what} is a file"
     try:
         files = sorted(file.name for file in path.parent.iterdir() if file.is_file())
     except OSError:

@@ -21,6 +21,7 @@ from dem_cli.case.plausibility import doubts
 from dem_cli.case.scanner import KeyPositions, impossible_values, parsed
 from dem_cli.case.schema import Case
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, UsageError, dotted
+from dem_cli.input_limits import CASE_BYTES, UnreadableInput, read_bounded
 
 # The class of case files for the tables of one; of None, with all that there is: for what to say of mistakes.
 ModelOf = Callable[[dict[str, Any] | None], type[Case]]
@@ -188,11 +189,11 @@ def syntax_message(message: str) -> str:
 def read_text(path: Path) -> str:
     """The text of a UTF-8 file, with or without byte order mark."""
     try:
-        raw = path.read_bytes()
+        raw = read_bounded(path, CASE_BYTES, pipes=True)
     except FileNotFoundError:
         raise UsageError(f"{path}: no such file{near_file(path)}") from None
-    except IsADirectoryError:
-        raise UsageError(f"{path}: is a folder; a case is a TOML file") from None
+    except UnreadableInput as error:
+        raise UsageError(f"{path}: {error}; a case is a TOML file") from None
     except OSError as error:
         raise UsageError(f"{path}: cannot be read ({error.strerror or error})") from None
     return decoded(path, raw)

@@ -12,6 +12,7 @@ import tomli
 
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseProblem, KeyPath
+from dem_cli.input_limits import DEEPEST, LARGEST
 
 BLANK = re.compile(r"(?:[ \t\n,]|#[^\n]*)*")  # between elements: space, lines, commas, comments
 KEY_PART = re.compile(r"""[ \t]*("(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[^\s.=\]"']+)[ \t]*""")
@@ -21,8 +22,6 @@ STRING = re.compile(
     re.DOTALL,
 )
 SCALAR = re.compile(r"[^,\]}\n#]*")
-LARGEST = 1e30  # what is larger overflows in products (masses, inertias); nothing in a case is
-DEEPEST = 20  # levels of lists and tables; the format has 6
 
 
 def parsed(text: str) -> dict[str, Any]:

@@ -35,6 +35,7 @@ from dem_cli.case.load_tables import Fill, GroundTable, Load, Pressure, Restrain
 from dem_cli.case.reference import Reference
 from dem_cli.case.selection import GroupMembers, Selection
 from dem_cli.case.sweep import Sweep
+from dem_cli.input_limits import MOST_FRAMES
 
 
 class Material(CaseModel):
@@ -229,7 +230,7 @@ class Monitor(Selection):
 class Output(CaseModel):
     """[output]"""
 
-    frames: Annotated[int, Field(ge=0)] | None = Field(
+    frames: Annotated[int, Field(ge=0, le=MOST_FRAMES)] | None = Field(
         default=None,
         description="snapshots kept; 0 for none; default: 20, of time histories as many as show the motion",
         examples=[60],

@@ -79,7 +79,9 @@ def allowed_one(kind: DeclaredType, many: bool = False) -> str:
         return str(own_words(many))
     if origin in (tuple, list):
         variable = origin is list or arguments[-1] is Ellipsis
-        count = (f"at least {least} " if least else "") if variable else f"{len(arguments)} "
+        most = next((limit.max_length for limit in kind.limits if isinstance(limit, limits.MaxLen)), 0)
+        range_ = " and ".join([f"at least {least}"] * bool(least) + [f"at most {most:,}"] * bool(most))
+        count = (f"{range_} " if range_ else "") if variable else f"{len(arguments)} "
         return f"{'lists' if many else 'a list'} of {count}{allowed((kind_of(arguments[0]),), many=True)}"
     return "something else"
 

@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from dem_cli.errors import UsageError
+from dem_cli.input_limits import CASE_BYTES
+
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
 
@@ -76,7 +79,10 @@ def load(case: str, overrides: Sequence[str]) -> LoadedCase:
 
     if case != STDIN:
         return api.load_case(case, overrides)
-    text = decoded(STANDARD_INPUT, sys.stdin.buffer.read())
+    raw = sys.stdin.buffer.read(CASE_BYTES + 1)
+    if len(raw) > CASE_BYTES:
+        raise UsageError(f"{STANDARD_INPUT}: has no end within {CASE_BYTES / 1e6:,.0f} MB, the largest case allowed")
+    text = decoded(STANDARD_INPUT, raw)
     given[:] = [text]
     return api.load_case(STANDARD_INPUT, overrides, text)
 

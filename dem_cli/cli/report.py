@@ -57,4 +57,3 @@ def said(summary: dict[str, Any]) -> Any:
     tones = ["bad" if not as_declared(answer) else "look" if "missed" in answer else "good" for answer in answers]
     verdicts = [(tone, f"reference: {one_line(answer)}") for tone, answer in zip(tones, answers, strict=True)]
     return TerminalText(console.answer_rows(summary), verdicts)
-

@@ -26,11 +26,14 @@ def read(path: Path) -> Contents:
     """The meshes of a file in its order. Raises FileProblem."""
     try:
         data = json.loads(path.read_text(encoding="utf-8-sig"))
-    except (ValueError, RecursionError) as error:
+        found = list(_meshes(data, {}))
+    except RecursionError:
+        raise FileProblem("its lists and tables are nested too deeply") from None
+    except ValueError as error:
         raise FileProblem(f"not JSON ({error})") from None
     materials = dict(_materials(data))
     names = {guid: str(each.get("name") or "") for guid, each in materials.items()}
-    bodies = [_body(found, names) for found in _meshes(data, {})]
+    bodies = [_body(each, names) for each in found]
     given = {names[guid]: each["density"] for guid, each in materials.items() if each.get("density") is not None}
     return Contents(bodies, densities={name: _density(name, value) for name, value in given.items()})
 

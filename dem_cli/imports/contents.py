@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
+
+from dem_cli.input_limits import DRAWING_BYTES, MOST_BLOCKS, MOST_CORNERS, MOST_FACES, MOST_SHAPES, what_else
 
 UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 
@@ -41,6 +44,64 @@ class Contents(NamedTuple):
     left_out: Sequence[str] = ()  # what the file holds beside blocks, in words such as "3 TEXT"
     densities: Mapping[str, float] = MappingProxyType({})  # of layers, where the file says them [kg/m3]
     layers: Sequence[str] = ()  # of a drawing: those on which anything is drawn
+
+
+def check_file(path: Path) -> None:
+    """Raises FileProblem for what is no file, or a file that is too large; OSError where it is not there."""
+    if not path.is_file():
+        path.stat()
+        raise FileProblem(f"is {what_else(path)}; a drawing or mesh is a file")
+    size = path.stat().st_size
+    if size > DRAWING_BYTES:
+        raise FileProblem(f"has {size / 1e6:,.0f} MB; at most {DRAWING_BYTES / 1e6:,.0f} MB are read")
+
+
+def check_shapes(bodies: Sequence[FileBody]) -> None:
+    """Raises FileProblem where there are more blocks, or more corners of an outline or a face, than can be."""
+    if len(bodies) > MOST_BLOCKS:
+        raise FileProblem(f"it holds {len(bodies):,} shapes; at most {MOST_BLOCKS:,} are read")
+    faces = sum(len(body.faces) for body in bodies)
+    if faces > MOST_FACES:
+        raise FileProblem(f"it holds {faces:,} faces; at most {MOST_FACES:,} are read")
+    for number, body in enumerate(bodies, 1):
+        named = f"'{body.name}'" if body.name else body.said or f"shape {number}"
+        check_corners(named, max(map(len, body.faces)) if body.faces else len(body.points))
+
+
+def check_corners(named: str, count: int) -> None:
+    """Raises FileProblem where an outline, a face or a solid has too many corners."""
+    if count > MOST_CORNERS:
+        raise FileProblem(f"{named} has {count:,} corners; outlines, faces and solids have at most {MOST_CORNERS:,}")
+
+
+def written_out(root: str, parts: Callable[[str], Iterable[tuple[str | None, int]]]) -> int:
+    """How many shapes a drawing has where what refers to a part of it is that part.
+
+    parts: of a name, what it consists of: (None, n) are n shapes, (name, n) is another part n times. Raises
+    FileProblem: a part holds itself, or there are too many.
+    """
+    counts: dict[str, int] = {}
+    begun: list[str] = []
+
+    def count(name: str) -> int:
+        if name in begun:
+            raise FileProblem(
+                f"'{name}' refers to itself, by way of {len(begun) - begun.index(name)} parts; it has no end"
+            )
+        if name not in counts:
+            begun.append(name)
+            counts[name] = sum(n * (1 if inner is None else count(inner)) for inner, n in parts(name))
+            begun.pop()
+            if counts[name] > MOST_SHAPES:
+                raise FileProblem(
+                    f"it draws {counts[name]:,} shapes, all that it repeats; at most {MOST_SHAPES:,} are read"
+                )
+        return counts[name]
+
+    try:
+        return count(root)
+    except RecursionError:
+        raise FileProblem(f"its parts refer to each other over {len(begun)} levels; that is too many") from None
 
 
 def unit_of(contents: Contents, given: str | None) -> str:

@@ -10,10 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dem_cli.errors import MissingExtra
-from dem_cli.imports.contents import Contents, FileBody, FileProblem
+from dem_cli.imports.contents import Contents, FileBody, FileProblem, written_out
 
 UNITS = {0: "", 1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 14: "dm"}  # of $INSUNITS; 0: it says none
 OUTLINES, PIECES = ("LWPOLYLINE", "POLYLINE"), ("LINE", "ARC")
+_MODEL_SPACE = "*Model_Space"
 _SAME = 1e-9  # of the size of a drawing: ends of lines that meet
 
 
@@ -81,7 +82,24 @@ def _entities(drawing: Any) -> Iterable[Any]:
     """What the model space shows, block references taken apart."""
     from ezdxf import disassemble
 
+    written_out(_MODEL_SPACE, lambda name: _parts(drawing, name))
     return disassemble.recursive_decompose(drawing.modelspace())
+
+
+def _parts(drawing: Any, name: str) -> Iterable[tuple[str | None, int]]:
+    """What the model space, or a block of a drawing, consists of: shapes, and references to blocks."""
+    inside = drawing.modelspace() if name == _MODEL_SPACE else drawing.blocks.get(name)
+    for entity in inside or ():
+        if entity.dxftype() != "INSERT":
+            yield None, 1
+            continue
+        try:
+            if entity.dxf.insert is None:
+                raise ValueError("it stands nowhere")
+            times = max(int(entity.dxf.row_count), 1) * max(int(entity.dxf.column_count), 1)
+        except (AttributeError, TypeError, ValueError) as error:
+            raise FileProblem(f"a reference to the block '{entity.dxf.name}' is damaged ({error})") from None
+        yield str(entity.dxf.name), times
 
 
 def _path(entity: Any) -> Any:

@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple
 
-from dem_cli.imports.contents import Contents, FileProblem
+from dem_cli.imports.contents import Contents, FileProblem, check_file, check_shapes
 
 
 class FileFormat(NamedTuple):
@@ -45,9 +45,11 @@ def read(
         raise FileProblem(f"'{path.suffix}' is not read; allowed: {', '.join(FORMATS)}")
     reader: Callable[..., Contents] = import_module(found.module).read
     try:
+        check_file(path)
         contents = reader(path, chords, only, skip) if found.flat else reader(path)
     except OSError as error:
         raise FileProblem(f"cannot be read ({error.strerror or error})") from None
+    check_shapes(contents.bodies)
     absent = [name for name in only if name not in contents.layers]
     if absent:
         drawn = ", ".join(f"'{name}'" for name in contents.layers if name) or "none"

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dem_cli.imports.contents import Contents, FileBody, FileProblem
+from dem_cli.imports.contents import Contents, FileBody, FileProblem, check_corners
 
 QUIET = {"vn", "vt", "vp", "s", "mtllib", "usemap", "maplib", "lod", "bevel", "c_interp", "d_interp", "shadow_obj"}
 CURVED = {"curv", "curv2", "surf", "cstype", "parm", "trim", "hole", "bmat"}
@@ -94,6 +94,7 @@ def _point(words: list[str], number: int) -> list[float]:
 
 def _loop(words: list[str], n_points: int, number: int) -> list[int]:
     """Numbers of the corners of a face from 0; the file counts from 1, or back from the last one."""
+    check_corners(f"line {number}: a face", len(words))
     found = []
     for word in words:
         try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol
 
@@ -11,11 +12,13 @@ from dem_cli.arithmetic.products import norm
 from dem_cli.arithmetic.small_matrices import determinants, singular
 from dem_cli.geometry import polygon, polyhedron
 from dem_cli.geometry.common_planes import Snapped, on_common_planes
+from dem_cli.geometry.crowding import crowd
 from dem_cli.geometry.decomposition import convex_parts, is_simple
 from dem_cli.geometry.facets import Facets, facets_of_outline, facets_of_surface
 from dem_cli.geometry.solid_decomposition import Sides, convex_pieces, solid_volume
-from dem_cli.imports.contents import FileBody, FileProblem
+from dem_cli.imports.contents import FileBody, FileProblem, check_corners
 from dem_cli.imports.shells import shells_of
+from dem_cli.input_limits import MOST_TOGETHER
 
 ROUNDED = 1e-6  # of the size of all: what files round off, put back by default
 SINGLE = 2.0**-22  # of the largest coordinate: twice what single precision rounds off
@@ -49,6 +52,7 @@ class Solid(NamedTuple):
 
 def solids_of(bodies: Sequence[FileBody], factor: float, how: Reading) -> tuple[list[Solid], list[str]]:
     """All solids in the order of the file, and notes on what was moved. Raises FileProblem, with the solid named."""
+    _check_copies(bodies)
     owners: list[int] = []
     shapes: list[Any] = []
     for number, body in enumerate(bodies, 1):
@@ -57,6 +61,8 @@ def solids_of(bodies: Sequence[FileBody], factor: float, how: Reading) -> tuple[
             found = shells_of(with_place) if body.faces else [closed_outline(with_place.points)]
         except FileProblem as error:
             raise FileProblem(f"{called(body, number)}: {error}") from None
+        for shape in found:
+            check_corners(called(body, number), len(shape if isinstance(shape, np.ndarray) else shape.points))
         owners += [number] * len(found)
         shapes += found
     tolerance = rounding(bodies, factor) if how.snap is None else how.snap
@@ -94,6 +100,16 @@ def called(body: FileBody, number: int) -> str:
     kind = "outline" if not body.faces else "solid"
     x = body.points.mean(axis=0)
     return f"{kind} {number}{layer} around [{', '.join(f'{value:.4g}' for value in x)}]"
+
+
+def _check_copies(bodies: Sequence[FileBody]) -> None:
+    """Raises FileProblem where the same corners are there under a hundred names."""
+    copies = Counter(body.points.tobytes() for body in bodies)
+    corners, count = copies.most_common(1)[0]
+    if count > MOST_TOGETHER:
+        first = next(k for k, body in enumerate(bodies, 1) if body.points.tobytes() == corners)
+        message = f"{called(bodies[first - 1], first)}: {count - 1:,} others have the same corners"
+        raise FileProblem(f"{message}; at most {MOST_TOGETHER} lie in the same place")
 
 
 def _placed(points: np.ndarray, factor: float, up: str) -> np.ndarray:
@@ -138,9 +154,11 @@ def _near(facets: Sequence[Facets], reach: float) -> np.ndarray:
     from dem_cli.contact.near_boxes import near_boxes
 
     corners = np.concatenate([each.points for each in facets])
+    starts = np.concatenate([[0], np.cumsum([len(each.points) for each in facets])])
+    if crowd(corners, starts) is not None:  # refused where all mistakes of shapes are
+        return np.zeros((0, 2), np.int64)
     if corners.shape[1] == 2:
         corners = np.column_stack([corners, np.zeros(len(corners))])
-    starts = np.concatenate([[0], np.cumsum([len(each.points) for each in facets])])
     n = len(facets)
     return near_boxes(corners, starts, np.arange(n), np.zeros(n, bool), reach)
 

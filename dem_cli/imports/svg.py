@@ -16,9 +16,10 @@ from xml.etree import ElementTree
 import numpy as np
 
 from dem_cli.errors import MissingExtra
-from dem_cli.imports.contents import Contents, FileBody, FileProblem, finite
+from dem_cli.imports.contents import Contents, FileBody, FileProblem, finite, written_out
 
 LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
+_HREF = ("href", "{http://www.w3.org/1999/xlink}href")
 _PAGE = ("width", "height", "viewBox", "x", "y", "preserveAspectRatio")
 
 
@@ -53,11 +54,24 @@ def _parsed(path: Path, left_out: Counter[str]) -> Any:
         for key in _PAGE:
             root.attrib.pop(key, None)
         left_out["hidden"] += sum(map(_is_hidden, root.iter()))
+        _check_uses(root)
         return SVG.parse(io.BytesIO(ElementTree.tostring(root)), reify=True)
     except FileProblem:
         raise
     except Exception as error:  # of the parsers: whatever they stumble over
         raise FileProblem(f"not an SVG drawing that can be read ({str(error) or type(error).__name__})") from None
+
+
+def _check_uses(root: Any) -> None:
+    """Raises FileProblem where what <use> repeats has no end, or is too much."""
+    named = {f"#{element.get('id')}": element for element in root.iter() if element.get("id")}
+
+    def parts(name: str) -> Iterator[tuple[str | None, int]]:
+        for element in named.get(name, root).iter():
+            used = next((element.get(key) for key in _HREF if element.get(key)), None)
+            yield (used, 1) if used in named else (None, 1)
+
+    written_out("", parts)
 
 
 def _is_hidden(element: Any) -> bool:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from dem_cli.case.base import Vector
 from dem_cli.errors import CaseError, CaseProblem
+from dem_cli.input_limits import LONGEST
 from dem_cli.motion import pulses
 from dem_cli.motion.motion import Motion, Waveform, moving_at_the_end
 from dem_cli.motion.record import Accelerogram, record
@@ -54,6 +55,8 @@ def check(case: Case) -> list[CaseProblem]:
     """Reads every record: warnings about them. Raises CaseError on one that cannot be used."""
     found = []
     for i, table in enumerate(case.motion):
+        if isinstance(table, PulseTable) and (length := _pulse(table).duration) > LONGEST:
+            raise CaseError([CaseProblem(("motion", i), f"lasts {length:.3g} s; at most {LONGEST:g} s are shaken")])
         if isinstance(table, RecordTable):
             for motion in _suite(table, i, case.seed):
                 found += [CaseProblem(("motion", i, "file"), warning) for warning in motion.warnings]

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.input_limits import LARGEST, LONGEST, MOST_SAMPLES
 from dem_cli.motion.record_text import RecordError, apart, by_width, is_number, number, read_text
 from dem_cli.motion.units import SI_FACTORS
 
@@ -59,8 +60,25 @@ def read_series(
     else:
         values = _column(path.name, rows, numbers, column)
         times = step * np.arange(len(values))
+    _check_sizes(path.name, times, values)
     plain = column is None or column == ALONG  # else the unit may be that of another column
     return RecordSamples(times, values, *(said_unit(lines[: numbers[0] - 1]) if plain else (None, None)))
+
+
+def _check_sizes(name: str, times: np.ndarray, values: np.ndarray) -> None:
+    """Raises RecordError where times or values are those of no record: too many samples, or none that can be used."""
+    end = float(max(abs(times[0]), abs(times[-1])))
+    if end > LONGEST:
+        raise RecordError(f"{name}: a time of {end:.3g} s is not allowed; at most {LONGEST:g} s are read")
+    steps = float(times[-1] - times[0]) / max(float(np.diff(times).min()), np.finfo(float).tiny)
+    if max(len(times), steps) > MOST_SAMPLES:
+        shortest = float(np.diff(times).min())
+        made = f"{len(times):,} samples" if len(times) > MOST_SAMPLES else (
+            f"a step of {shortest:.3g} s in {times[-1] - times[0]:.3g} s")  # fmt: skip
+        raise RecordError(f"{name}: {made} are not allowed; at most {MOST_SAMPLES:,} steps of the shortest are read")
+    most = float(np.abs(values).max())
+    if most > LARGEST:
+        raise RecordError(f"{name}: a value of {most:.3g} is not allowed; numbers are at most {LARGEST:g} in size")
 
 
 def said_unit(header: list[str]) -> tuple[str | None, str | None]:

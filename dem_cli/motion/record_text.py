@@ -10,6 +10,8 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+from dem_cli.input_limits import RECORD_BYTES, UnreadableInput, read_bounded
+
 # A number as people and Fortran write it: 1, -.5, 2.5E-3, 2.5D-03, and 2.5-103 where an exponent has three digits.
 NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[eEdD]([+-]?\d+))?", re.ASCII)
 LONG_EXPONENT = re.compile(r"([+-]?(?:\d+\.\d*|\.\d+))([+-]\d{3})", re.ASCII)
@@ -28,7 +30,9 @@ class RecordError(ValueError):
 def read_text(path: Path) -> str:
     """What stands in a text file: UTF-8, UTF-16 with a mark, else Windows' Latin-1. Raises RecordError."""
     try:
-        raw = path.read_bytes().rstrip(END_OF_FILE)
+        raw = read_bounded(path, RECORD_BYTES).rstrip(END_OF_FILE)
+    except UnreadableInput as error:
+        raise RecordError(f"{path.name}: {error}") from None
     except OSError as error:
         raise RecordError(f"{path.name}: cannot be read ({error.strerror or error})") from None
     marked = next((name for mark, name in MARKS.items() if raw.startswith(mark)), None)

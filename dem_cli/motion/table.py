@@ -9,11 +9,11 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Positive, Vector
 from dem_cli.case.named_file import absolute_path, missing_file
+from dem_cli.input_limits import LONGEST, MOST_CYCLES
 from dem_cli.motion.units import SI_FACTORS
 from dem_cli.tables.spectrum import SpectrumTable
 
 Unit = Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m/s", "cm/s", "mm/s", "m", "cm", "mm"]
-MOST_CYCLES = 1_000_000  # of a harmonic motion
 PULSES = {"frequency": ("sine", "cosine", "half-sine", "ricker"), "duration": ("impulse",)}
 
 
@@ -28,7 +28,7 @@ class MotionTable(CaseModel):
         description="ids of the fixed blocks that move, patterns, groups; default: all of them",
         examples=[["ground"]],
     )
-    start: NonNegative = Field(default=0.0, description="time at which it begins [s]")
+    start: Annotated[NonNegative, Field(le=LONGEST)] = Field(default=0.0, description="time at which it begins [s]")
     event: Name | None = Field(
         default=None,
         description="fragility: name of the record that this is a component of; components of one event are scaled "
@@ -100,13 +100,20 @@ class HarmonicTable(MotionTable):
         if (self.cycles is None) == (self.duration is None):
             found = "'cycles' and 'duration' are" if self.cycles else "neither 'cycles' nor 'duration' is"
             raise ValueError(f"{found} given; a harmonic motion has one of them")
+        if self.length > LONGEST:
+            raise KeyProblem(f"{self.length:g} s is not allowed; at most {LONGEST:g} s", self._says_length)
         if self.length * self.frequency > MOST_CYCLES:
             message = f"{self.length * self.frequency:.3g} cycles are not allowed; at most {MOST_CYCLES:,}"
-            raise KeyProblem(message, "duration" if self.cycles is None else "cycles")
+            raise KeyProblem(message, self._says_length)
         if 2.0 * self.ramp > self.length * self.frequency * (1.0 + 1e-9):
             most = 0.5 * self.length * self.frequency
             raise KeyProblem(f"{self.ramp:g} is not allowed; must be at most half of all cycles, {most:g}", "ramp")
         return self
+
+    @property
+    def _says_length(self) -> str:
+        """The key that says how long it is."""
+        return "duration" if self.cycles is None else "cycles"
 
     @property
     def length(self) -> float:

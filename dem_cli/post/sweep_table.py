@@ -139,6 +139,7 @@ def _text(folder: Path, name: str) -> str:
     except (OSError, UnreadableInput) as error:
         raise UsageError(f"{folder / name}: {getattr(error, 'strerror', None) or error}") from None
 
+
 def value(text: str) -> Any:
     """What a cell holds: a number, a truth, a word, or nothing."""
     if text in ("", "true", "false"):

@@ -73,4 +73,3 @@ def pictures(results: Results) -> list[dict[str, str]]:
             data = base64.b64encode(path.read_bytes()).decode("ascii")
             found.append({"source": f"data:image/png;base64,{data}", "alt": _ALT.get(name, Path(name).stem)})
     return found
-

@@ -127,4 +127,3 @@ def links(table: SweepTable, place: Path) -> dict[str, str]:
         if name:
             found[run] = quote(f"{base}/{run}/{name}")
     return found
-

@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
+from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase, check_count
 from dem_cli.geometry import polygon
 from dem_cli.model.blocks import Block
 from dem_cli.structures.bases import base_block
@@ -102,6 +102,7 @@ class Bridge(StructureBase):
             found = "both" if self.spans else "none"
             raise KeyProblem(f"a bridge needs either spans or span; found {found}", "spans")
         spans = self.all_spans
+        check_count(len(spans) * self.voussoirs * self.rows, "voussoirs")
         if self.rise is not None and self.rise > min(spans) / 2.0 * (1.0 + 1e-9):
             message = f"{self.rise:g} is not allowed; must be at most {min(spans) / 2.0:g}, half the least span"
             raise KeyProblem(message, "rise")

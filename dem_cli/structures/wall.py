@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import KeyProblem, NonNegative, Pair, Positive
+from dem_cli.case.base import KeyProblem, NonNegative, Pair, Positive, check_count
 from dem_cli.structures import tops
 from dem_cli.structures.bonding import BondKeys
 from dem_cli.structures.courses import HEADER_BONDS, LEAST_PIECE, bed_joints
@@ -17,7 +17,6 @@ from dem_cli.structures.openings import NARROWEST_PIECE, Opening, check_apart, c
 from dem_cli.structures.sides import Side
 from dem_cli.structures.wall_outline import NOT_UPRIGHT, Outlined
 
-MOST_BLOCKS = 1_000_000
 OF_OUTLINE = ("courses", "blocks_per_course", "length", "course_heights", "course_lengths", "gable", "profile")
 
 
@@ -171,9 +170,7 @@ class Wall(BondKeys, Outlined):
             raise KeyProblem(f"a wall needs either blocks_per_course or length; {found}", "blocks_per_course")
         lengths = self.course_lengths or (self.block[0],) * (len(self.levels) - 1)
         count = sum(self.extent / length for length in lengths) * self.leaves
-        if count > MOST_BLOCKS:
-            key = "course_lengths" if self.course_lengths else "courses"
-            raise KeyProblem(f"{count:.3g} blocks are too many; must be at most {MOST_BLOCKS:,}", key)
+        check_count(count, "course_lengths" if self.course_lengths else "courses")
         return self
 
     @model_validator(mode="after")

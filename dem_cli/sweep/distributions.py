@@ -11,8 +11,8 @@ import numpy as np
 from dem_cli.arithmetic import functions
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseError, CaseProblem, KeyPath
+from dem_cli.input_limits import MOST_RUNS
 
-MOST_RUNS = 1_000_000  # runs: more are a slip, or a case for several sweeps
 EVEN_KEYS = frozenset(("from", "to", "count", "log"))
 Fractions = np.ndarray  # (n,), in (0, 1)
 

@@ -16,8 +16,9 @@ from dem_cli.case.overrides import Override, key_path
 from dem_cli.case.sweep import Sweep
 from dem_cli.case.wording import listing, show, unknown_name
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
+from dem_cli.input_limits import MOST_RUNS
 from dem_cli.output.sweep_files import IDENTITY_COLUMNS
-from dem_cli.sweep.distributions import EVEN_KEYS, MOST_RUNS, QUANTILES, drawn, even, latin_hypercube
+from dem_cli.sweep.distributions import EVEN_KEYS, QUANTILES, drawn, even, latin_hypercube
 
 LABEL_KEY = "name"  # of a [[sweep.run]]: a label, no key of the case
 RESERVED_NAMES = (LABEL_KEY, *IDENTITY_COLUMNS)  # of the table, which no axis of bundles is called

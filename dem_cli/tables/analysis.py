@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, Vector
+from dem_cli.input_limits import LONGEST
 from dem_cli.tables.code_check import CodeCheck, Idealisation
 
 Share = Annotated[float, Field(ge=0.0, le=0.2)]
@@ -193,7 +194,7 @@ class Perturbation(CaseModel):
 class ShakingAnalysis(CaseModel):
     """What analyses of structures that are shaken accept."""
 
-    duration: float | None = Field(
+    duration: Annotated[float, Field(le=LONGEST)] | None = Field(
         default=None, gt=0.0, description="time that is computed [s]; default: that of the motion", examples=[15.0]
     )
     time_step: float | None = Field(
@@ -236,7 +237,7 @@ class TimeHistoryAnalysis(ShakingAnalysis):
     """[analysis] with kind = "time-history": the motion of the structure while its supports move."""
 
     kind: Literal["time-history"] = "time-history"
-    after_collapse: float = Field(default=0.5, ge=0.0, description="how long a collapse is followed [s]")
+    after_collapse: float = Field(default=0.5, ge=0.0, le=LONGEST, description="how long a collapse is followed [s]")
 
 
 class FragilityAnalysis(ShakingAnalysis):

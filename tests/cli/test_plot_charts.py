@@ -285,7 +285,7 @@ def test_a_table_that_is_none(tmp_path, text):
     folder = write_sweep(tmp_path / "s", text)
     code, output = dem(folder)
     assert code == 2
-    assert "table of a sweep" in output
+    assert "these results are damaged: sweep.csv" in output
     assert len(output.splitlines()) == 1
 
 
@@ -300,7 +300,7 @@ def test_one_picture(runs, tmp_path):
     [
         ("run,a,status,reason,blocks\nr1,1,ok,,2\nr2,2,ok,,2\n", "no column is the answer; choose one with -y"),
         ("run,a,status,reason,blocks\nr1,1,waiting,,\n", "no run has an answer yet"),
-        ("", "not a table of a sweep"),
+        ("", "the column 'run' is missing"),
         (None, "no sweep.csv yet"),
     ],
 )

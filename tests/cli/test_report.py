@@ -184,7 +184,7 @@ def test_charts_of_a_time_history(tmp_path):
         (("nowhere",), "nowhere: no such folder"),
         (("empty",), "empty: holds no results of dem run or dem sweep"),
         (("wall", "-o", "empty"), "empty: a folder; -o takes the name of a file"),
-        (("broken",), "broken/sweep.csv: not a table of a sweep, or one without runs"),
+        (("broken",), "broken: these results are damaged: sweep.csv: the column 'run' is missing"),
     ],
 )
 def test_mistakes(tmp_path, monkeypatch, arguments, message):

@@ -17,7 +17,7 @@ from dem_cli.errors import DamagedResults
 from dem_cli.input_limits import MOST_EXPANSION, SMALL_RESULTS
 from dem_cli.output.integrity.array_values import checked
 from dem_cli.output.layout import GROUPS, NAMES, NUMBERS, ONE_MORE, TRUTHS, WHOLE, Described, Group, declared
-from dem_cli.output.record import STAGES, STATES
+from dem_cli.output.record import MONITOR_UNITS, STAGES, STATES
 
 KINDS = {NUMBERS: "f", WHOLE: "iu", TRUTHS: "b", NAMES: "OS"}  # of NumPy
 GROWING = ("frame", "row", "sample", "contact point")  # axes that a killed run may have left longer than it counted
@@ -161,7 +161,9 @@ def check_size(file: h5py.File, path: Path) -> None:
     allowed = max(SMALL_RESULTS, MOST_EXPANSION * path.stat().st_size)
     total = sum(data.nbytes for _, data in _datasets(file))
     if total > allowed:
-        raise DamagedResults(f"it would take {total / 1e9:,.0f} GB to read a file of {path.stat().st_size / 1e6:,.1f} MB")
+        raise DamagedResults(
+            f"it would take {total / 1e9:,.0f} GB to read a file of {path.stat().st_size / 1e6:,.1f} MB"
+        )
 
 
 def _datasets(group: h5py.Group, above: str = "") -> Iterator[tuple[str, h5py.Dataset]]:
@@ -192,10 +194,8 @@ def _check_where(file: h5py.File) -> None:
 
 
 def _check_attributes(path: str, group: h5py.Group, said: Group) -> None:
-    """Raises DamagedResults where an attribute is missing, or is not what it must be."""
-    for name in said.attributes:
-        if name == "*":
-            continue
+    """Raises DamagedResults where an attribute is missing, or is not what it must be; any may stand in an open list."""
+    for name in said.attributes if "*" not in said.attributes else ():
         if name not in group.attrs:
             raise DamagedResults(f"{path}: the attribute {name} is missing")
         try:
@@ -208,6 +208,11 @@ def _check_attributes(path: str, group: h5py.Group, said: Group) -> None:
             right, what = np.ndim(value) == 0 and np.asarray(value).dtype.kind in "iu", "a whole number"
         else:
             right, what = isinstance(value, str), "text"
+        if right and name == "quantities":
+            right, what = (
+                set(value) <= MONITOR_UNITS.keys() and len(value) == len(group.attrs["monitors"]),
+                ("a quantity of each monitor"),
+            )
         if not right:
             raise DamagedResults(f"{path}: the attribute {name} is not {what}")
 

@@ -20,7 +20,8 @@ Pair = Annotated[list[Maybe], Field(min_length=2, max_length=2)]
 Range = Annotated[list[Number], Field(min_length=2, max_length=2)]
 KINDS = {  # of errors of pydantic -> what the value is not
     "float_type": "a number", "int_type": "a whole number", "string_type": "text", "bool_type": "true or false",
-    "list_type": "a list", "too_short": "two numbers", "too_long": "two numbers", "dict_type": "a table", "model_type": "a table",
+    "list_type": "a list", "too_short": "two numbers", "too_long": "two numbers", "dict_type": "a table",
+    "model_type": "a table",
     "finite_number": "finite", "greater_than_equal": "a count", "int_from_float": "a whole number",
 }  # fmt: skip
 
@@ -82,7 +83,7 @@ class FoundTurn(SummaryTable):
 class FoundLoad(SummaryTable):
     """capacity_curve.loads_at.N."""
 
-    load: Number
+    load: Maybe
     displacement: Number
 
 
@@ -137,7 +138,6 @@ class FoundLoop(SummaryTable):
 class FoundLimits(SummaryTable):
     """limit_analysis."""
 
-    TOGETHER = {"associated": ("associated_bounds",), "non_associated": ("non_associated_residual",)}
     associated: Maybe = None
     associated_bounds: Range | None = None
     associated_status: str | None = None
@@ -275,8 +275,8 @@ class RunSummary(SummaryTable):
     }  # fmt: skip
     title: str
     kind: str
-    version: str
     status: str
+    version: str = ""
     failure_load: Maybe = None
     failure_load_bracket: Pair | None = None
     failure_mode: str | None = None
@@ -370,7 +370,7 @@ def _words(error: ValidationError, found: Any) -> str:
     first = error.errors(include_url=False, include_input=False, include_context=False)[0]
     path: list[str | int] = []
     for key in first["loc"]:  # pydantic names the choice that it tried as well
-        inside = isinstance(found, dict) and key in found or isinstance(found, list) and key in range(len(found))
+        inside = key in found if isinstance(found, dict) else isinstance(found, list) and key in range(len(found))
         if not inside and first["type"] != "missing":
             break
         path.append(key)

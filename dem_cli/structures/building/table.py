@@ -7,13 +7,12 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Pair, Positive, RandomStructure
+from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Pair, Positive, RandomStructure, check_count
 from dem_cli.structures.bonding import BondKeys
 from dem_cli.structures.building.patterns import BuildingPattern
 from dem_cli.structures.courses import HEADER_BONDS, bed_joints
 from dem_cli.structures.openings import Opening, check_apart
 from dem_cli.structures.tops import Gable
-from dem_cli.structures.wall import MOST_BLOCKS
 
 FRONT = {"id": "front", "axis": [[0.0, 0.0], [5.0, 0.0]]}
 PATTERN = {"kind": "voronoi", "cell": 0.4}
@@ -189,8 +188,7 @@ class Building(BondKeys, RandomStructure):
     def _not_too_many(self) -> Building:
         length = sum(float(np.hypot(*np.subtract(*wall.axis))) for wall in self.walls)
         count = length / self.block[0] * self.courses
-        if count > MOST_BLOCKS:
-            raise KeyProblem(f"{count:.3g} blocks are too many; must be at most {MOST_BLOCKS:,}", "courses")
+        check_count(count, "courses")
         return self
 
 

@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
+from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase, check_count
 from dem_cli.geometry.polygon import rectangle
 from dem_cli.model.blocks import Block
 from dem_cli.structures.bases import base_block
@@ -85,6 +85,7 @@ class TempleFront(StructureBase):
 
     @model_validator(mode="after")
     def _columns_apart(self) -> TempleFront:
+        check_count(self.columns * (self.column.courses or 1), "columns")
         widths = {"plinth": self.column.plinth, "capital": self.column.capital}
         widest = max([2.0 * float(self.column.profile.max()), *(part.width for part in widths.values() if part)])
         if self.spacing < widest * (1.0 - 1e-9):

@@ -10,11 +10,11 @@ from pydantic import Field, model_validator
 
 from dem_cli.arithmetic import functions
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive
+from dem_cli.input_limits import MOST_STONES
 from dem_cli.structures.patterns.cut import within
 from dem_cli.structures.patterns.panel import LEAST_SHARE, WallPanel, fitted
 from dem_cli.structures.patterns.tiling import Tiling
 
-MOST_STONES = 100_000
 SHORTEST = 0.05  # of the mean side: corners on a bed that would be closer become one
 
 Size = tuple[Positive, NonNegative]  # mean and deviation

@@ -10,13 +10,13 @@ from pydantic import Field, model_validator
 
 from dem_cli.arithmetic.products import product
 from dem_cli.case.base import KeyProblem, Positive
+from dem_cli.input_limits import MOST_STONES
 from dem_cli.model.blocks import Block
 from dem_cli.structures.patterns.cut import within
 from dem_cli.structures.patterns.panel import fitted
 from dem_cli.structures.patterns.pattern_wall import PatternWall, masonry
 from dem_cli.structures.patterns.tiling import Loop, Tiling
 
-MOST_STONES = 100_000
 SHORTEST = 0.02  # of the mean side: shorter edges at openings collapse
 
 

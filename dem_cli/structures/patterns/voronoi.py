@@ -8,11 +8,11 @@ from pydantic import Field, model_validator
 from dem_cli.arithmetic.products import product
 from dem_cli.case.base import CaseModel, KeyProblem, Positive
 from dem_cli.geometry import polygon
+from dem_cli.input_limits import MOST_STONES
 from dem_cli.structures.patterns.panel import WallPanel, fitted
 from dem_cli.structures.patterns.short_edges import collapsed, sides_of
 from dem_cli.structures.patterns.tiling import SAME, Tiling
 
-MOST_CELLS = 100_000
 FEWEST_CELLS = 2
 
 
@@ -20,7 +20,7 @@ class VoronoiPattern(CaseModel):
     """Stones as the Voronoi cells of random points."""
 
     cells: int | None = Field(
-        None, ge=FEWEST_CELLS, le=MOST_CELLS, description="number of stones before openings are cut", examples=[200]
+        None, ge=FEWEST_CELLS, le=MOST_STONES, description="number of stones before openings are cut", examples=[200]
     )
     cell: Positive | None = Field(
         None, description="mean side of a stone, the root of its mean area [m], instead of cells", examples=[0.4]
@@ -56,11 +56,11 @@ class VoronoiPattern(CaseModel):
         if self.cell is None:
             return self.cells or FEWEST_CELLS
         count = area / self.cell**2
-        if not FEWEST_CELLS - 0.5 <= count <= MOST_CELLS:
+        if not FEWEST_CELLS - 0.5 <= count <= MOST_STONES:
             few = count < FEWEST_CELLS
-            side = (area / (FEWEST_CELLS if few else MOST_CELLS)) ** 0.5
+            side = (area / (FEWEST_CELLS if few else MOST_STONES)) ** 0.5
             limit = f"at most {side:.4g}" if few else f"at least {side:.4g}"
-            many = "only one stone" if few else f"{count:.3g} stones, more than {MOST_CELLS:,}"
+            many = "only one stone" if few else f"{count:.3g} stones, more than {MOST_STONES:,}"
             raise KeyProblem(f"{self.cell:g} makes {many}; must be {limit}", "cell")
         return round(count)
 

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import KeyProblem, NonNegative, Positive, StructureBase
+from dem_cli.case.base import KeyProblem, NonNegative, Positive, StructureBase, check_count
 from dem_cli.structures.arch import Pier
 
 Count = Annotated[int, Field(ge=3, le=10_000)]
@@ -123,6 +123,13 @@ class Vault(StructureBase):
         None, description="an upright wall below the dome", examples=[{"width": 0.8, "height": 2.0, "courses": 4}]
     )
     base: bool = Field(True, description="fixed blocks below, as deep as the vault is thick")
+
+    @model_validator(mode="after")
+    def _countable(self) -> Vault:
+        per_course = self.per_course if isinstance(self.per_course, int) else max(self.per_course or (1,))
+        check_count((self.voussoirs or 1) * self.rows, "voussoirs")
+        check_count((self.courses or 1) * per_course, "courses")
+        return self
 
     @property
     def on_ground(self) -> bool:

@@ -7,12 +7,13 @@ from pathlib import Path
 
 from studies.places import ROOT
 from studies.seeds import page as seeds_page
-from studies.site import case_keys, commands, gallery_page, readme, results_files
+from studies.site import case_keys, commands, gallery_page, limits, readme, results_files
 
 PAGES: dict[str, Callable[[], str]] = {
     "docs/case.md": case_keys.text,
     "docs/commands.md": commands.text,
     "docs/gallery.md": gallery_page.text,
+    "docs/guide/limits.md": limits.text,
     "docs/results.md": results_files.text,
     "docs/seeds.md": seeds_page.text,
     "README.md": readme.text,

@@ -32,7 +32,7 @@ def test_what_goes_in_comes_out(tmp_path):
     writer = writer_in(tmp_path)
     for samples in stretches():
         writer.samples(samples)
-    writer.close(wall_summary())
+    writer.close({**wall_summary(), "kind": "time-history"})
     whole, found = shaken(3000, 2), read(tmp_path).series
     np.testing.assert_array_equal(found.time, whole.times)
     np.testing.assert_array_equal(found.base, whole.base)

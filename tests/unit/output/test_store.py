@@ -138,7 +138,7 @@ def test_no_results_is_the_users_mistake(tmp_path, name):
 
 def test_a_damaged_file_is_reported(tmp_path):
     (tmp_path / "results.h5").write_bytes(b"nothing")
-    with pytest.raises(UsageError, match="not a readable result"):
+    with pytest.raises(UsageError, match=r"damaged: results\.h5 is not a whole file of HDF5"):
         read(tmp_path)
 
 
