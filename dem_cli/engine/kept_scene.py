@@ -54,7 +54,8 @@ _N_KINDS, _MOST_THREADS = 4, 4096
 def guard_of(sim: Simulation) -> Callable[[Any], None]:
     """Looks at `sim`, once a kept state is in it (None), or at a saved state beside. Raises ValueError: it is unfit."""
     before, bodies, links, chains = sim.tracking.arrays(), sim.bodies, sim.links, sim.tracking.chains
-    dampers = getattr(sim, "dampers", None)
+    dampers, in_tiles = getattr(sim, "dampers", None), sim.tiled
+    shortest, longest = sim.settings.detection.shortest_call, sim.settings.detection.longest_call
 
     def check(saved: Any | None) -> None:
         one = saved or sim.tracking
@@ -62,6 +63,8 @@ def guard_of(sim: Simulation) -> Callable[[Any], None]:
         _require(alike(bodies, getattr(one, "bodies", bodies)), "Bodies")
         if saved is not None:
             return
+        _require(sim.tiled is in_tiles, "tiled")
+        _require(shortest <= sim.longest <= max(shortest, longest) and sim.steps >= 0, "a call of the loop")
         _same(links, sim.links)
         _same(chains, sim.tracking.chains)
         if dampers is not None:

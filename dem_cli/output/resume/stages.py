@@ -179,6 +179,8 @@ class KeptStages(Stages):
         if known is None:
             return self._worked(under_way, work)
         if known.gave_up is not None:
+            if not all(each.isprintable() for each in known.gave_up.splitlines()):
+                raise self.kept.damaged("words that no terminal should see")
             raise SolverError(known.gave_up)
         return known.found  # type: ignore[no-any-return]
 
