@@ -75,7 +75,7 @@ REFUSED = {
     ),
     "courses of a gable": (
         f'{SPACE}[[structure]]\nkind = "building"\nblock = [0.5, 0.2, 0.3]\ncourses = 3\n[[structure.walls]]\n'
-        "axis = [[0.0, 0.0], [4.0, 0.0]]\ngable = { height = 1e18 }",
+        "id = 'w'\naxis = [[0.0, 0.0], [4.0, 0.0]]\ngable = { height = 1e18 }",
         "gable.height: 5e+18 blocks are too many",
     ),
     "frames": (f"{COLUMN}[output]\nframes = 1000000000", "output.frames: 1000000000 is not allowed"),
