@@ -246,10 +246,9 @@ def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     inertias = model.inertias.min(axis=1)
     weightless = ~(np.isfinite(model.masses + model.inertias.max(axis=1)) & (np.minimum(model.masses, inertias) > 0.0))
     if not found:
-        for i in np.flatnonzero(weightless):
+        for i in np.flatnonzero(weightless)[:1].tolist():
             message = f"block '{blocks[i].id}' has a mass of {model.masses[i]:g} kg, with which nothing can be computed"
             found.append(CaseProblem(blocks[i].path, f"{message}; its density or its size is far from any stone"))
-            break
     return found
 
 
