@@ -42,9 +42,9 @@ class NarrowPhase(Protocol[Geometry, Returning]):
         """Blocks that touch beside their joints, within `reach` [m], (n, 2), and how much of an area [m²], (n,)."""
 
     def touching(self, model: Model, faces: Faces, corners: np.ndarray, reach: float | np.ndarray) -> np.ndarray:
-        """Whether faces that are near each other carry force between blocks that do not move once they touch, (n,) bool.
+        """Whether faces near each other, once they touch, carry force between blocks that do not move, (n,) bool.
 
-        reach: how far they have to be within each other for that [m], one for all or (n,).
+        reach: they do not where they share less than that [m], one for all or (n,).
         """
 
     def facing(self, model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:

@@ -87,7 +87,8 @@ def left_out(model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarra
 def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float | np.ndarray) -> np.ndarray:
     """Those that share an area, a corner or an edge within a face, or cross with two edges, (n,) bool.
 
-    Blocks that meet edge to edge or corner to corner cannot carry force, to first order. reach: [m], one for all or (n,).
+    Blocks that meet edge to edge or corner to corner cannot carry force, to first order.
+    reach: [m], one for all or (n,).
     """
     found, reaches = meetings(model, faces, corners), np.broadcast_to(reach, len(faces.parts))
     return (found.measures[:, MARGIN] > reaches) & ~_on_joints(model, faces, corners, found, reaches)
