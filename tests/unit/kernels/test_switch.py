@@ -182,6 +182,15 @@ def test_a_surprise_throws_the_switch(how, door, monkeypatch):
         assert not jit.threads_may_share()
 
 
+def test_the_guide_shows_what_a_run_says(monkeypatch):
+    monkeypatch.setenv("DEM_PLAIN_NUMBA", "1")
+    switch, guide = Switch(), (PACKAGE.parent / "docs" / "guide" / "install.md").read_text(encoding="utf-8")
+    assert not switch.own_way()
+    assert f"\n  {'compilation':<14} {switch.said()[0]}\n" in guide
+    assert f"tried with, {TRIED.rstrip('.')}." in guide
+    assert "`DEM_PLAIN_NUMBA=1`" in guide
+
+
 @pytest.mark.parametrize("after", [0, 1])
 def test_a_surprise_while_it_compiles_is_one_as_well(after, door, monkeypatch):
     """After numba was told of the functions: the other way takes copies of them. Kernels of before go it too."""
