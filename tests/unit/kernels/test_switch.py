@@ -189,7 +189,7 @@ def test_the_guide_shows_what_a_run_says(monkeypatch):
     monkeypatch.setenv("DEM_PLAIN_NUMBA", "1")
     switch, guide = Switch(), (PACKAGE.parent / "docs" / "guide" / "install.md").read_text(encoding="utf-8")
     assert not switch.own_way()
-    assert f"\n  {'compilation':<14} {switch.said()[0]}\n" in guide
+    assert f"in a line `compilation`:\n`{switch.said()[0]}`." in guide
     assert f"tried with, {TRIED.rstrip('.')}." in guide
     assert "`DEM_PLAIN_NUMBA=1`" in guide
 
