@@ -156,7 +156,7 @@ def check_tiny(fill, shift=0.1) -> None:
     assert fill.bound()(array, 0.7) == array[0]
 
 
-@pytest.mark.parametrize("how", ["name", "signature", "version", "by hand", "nothing"])
+@pytest.mark.parametrize("how", ["name", "signature", "version", "answer", "by hand", "nothing"])
 def test_a_surprise_throws_the_switch(how, door, monkeypatch):
     fill = tiny()
     with monkeypatch.context() as patched:
@@ -166,11 +166,14 @@ def test_a_surprise_throws_the_switch(how, door, monkeypatch):
             patched.setattr(numba.core.caching.FunctionCache, "_index_key", lambda self, key: key)
         elif how == "version":
             patched.setattr(numba, "__version__", "0.99.0")
+        elif how == "answer":
+            patched.setattr(machine_code, "compiled", lambda function: lambda *given: True)
         elif how == "by hand":
             patched.setenv("DEM_PLAIN_NUMBA", "1")
         fill._made()
     said = {"name": "has no JITCodeLibrary._get_compiled_object", "signature": "has no FunctionCache._index_key",
-            "version": f"numba 0.99.0; {TRIED}x is what", "by hand": "DEM_PLAIN_NUMBA is set"}  # fmt: skip
+            "version": f"numba 0.99.0; {TRIED}x is what", "answer": "another answer than Python",
+            "by hand": "DEM_PLAIN_NUMBA is set"}  # fmt: skip
     check_tiny(fill)
     if how == "nothing":
         assert door.way is machine_code
@@ -180,6 +183,15 @@ def test_a_surprise_throws_the_switch(how, door, monkeypatch):
         assert len(SWITCH.said()) == 1
         assert said[how] in SWITCH.said()[0]
         assert not jit.threads_may_share()
+
+
+def test_the_guide_shows_what_a_run_says(monkeypatch):
+    monkeypatch.setenv("DEM_PLAIN_NUMBA", "1")
+    switch, guide = Switch(), (PACKAGE.parent / "docs" / "guide" / "install.md").read_text(encoding="utf-8")
+    assert not switch.own_way()
+    assert f"in a line `compilation`:\n`{switch.said()[0]}`." in guide
+    assert f"tried with, {TRIED.rstrip('.')}." in guide
+    assert "`DEM_PLAIN_NUMBA=1`" in guide
 
 
 @pytest.mark.parametrize("after", [0, 1])

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -57,6 +61,24 @@ def assert_same(one: list[np.ndarray], other: list[np.ndarray]) -> None:
     assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(one, other, strict=True))
 
 
+STEPPED = """
+import sys
+from test_tiles import fired
+found, used = fired(2)
+assert used == 1
+sys.stdout.buffer.write(found)
+"""
+
+
+def fired(threads: int) -> tuple[bytes, int]:
+    """The state of a wall of 1,600 blocks after some steps, and how many threads had work."""
+    sim = pushed(40, 40, threads)
+    assert sim.tiled
+    with crew_of(threads) as crew:
+        sim.advance(12, slot.FIRE)
+    return b"".join(array.tobytes() for array in state(sim)), crew.used
+
+
 @pytest.mark.parametrize("mode", WAYS)
 def test_many_at_once_are_one_after_the_other(mode):
     """To the last bit, compiled and as it is written, with points that stick, slide, open and close."""
@@ -93,6 +115,16 @@ def test_any_number_of_threads_finds_the_same_bits():
             found[threads] += state(sim)
     assert_same(found[2], found[1])
     assert_same(found[3], found[1])
+
+
+def test_numba_as_it_comes_finds_the_same_bits():
+    """It has one thread for a structure, whatever was asked for."""
+    environment = os.environ | {"DEM_PLAIN_NUMBA": "1", "NUMBA_NUM_THREADS": "2"}
+    command, here = [sys.executable, "-c", STEPPED], Path(__file__).parent
+    plain = subprocess.run(command, env=environment, cwd=here, capture_output=True, check=True).stdout
+    found, used = fired(2)
+    assert used == 2
+    assert plain == found
 
 
 def test_a_run_goes_on_with_other_threads():
