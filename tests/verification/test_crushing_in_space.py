@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 import dem_cli
 
 WALL = {
@@ -17,7 +15,6 @@ WALL = {
 }
 
 
-@pytest.mark.slow
 def test_crushed_stone_makes_no_energy():
     """Points of new faces deep in crushed stone held kn times all of their overlap: the run blew up at 0.71 s."""
     with dem_cli.run(WALL) as result:
