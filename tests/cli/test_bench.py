@@ -44,7 +44,6 @@ def quick(tmp_path_factory):
     return folder, json.loads((folder / "all.json").read_text("utf-8"))["groups"]
 
 
-@pytest.mark.slow
 def test_quick_measures_every_group(quick):
     _, groups = quick
     assert list(groups) == list(registry.GROUPS)
@@ -63,13 +62,11 @@ def test_joint_models_are_valid(name):
     joint_properties(case, model)
 
 
-@pytest.mark.slow
 def test_compiled_code_stays_in_its_folder(quick):
     """Elsewhere it would not be told apart from that of older sources."""
     assert str(machine_code.cache_folder()) == numba.config.CACHE_DIR
 
 
-@pytest.mark.slow
 def test_quick_answers_are_right(quick):
     _, groups = quick
     for record in groups["growth"]["records"]:
@@ -85,7 +82,6 @@ def test_quick_answers_are_right(quick):
             assert record["found"]["load"] > 0.08  # thickness over height: columns behind the ends hold the wall
 
 
-@pytest.mark.slow
 def test_quick_leaves_a_page_and_pictures(quick):
     folder, groups = quick
     text = (folder / "page" / "benchmarks.md").read_text("utf-8")
@@ -96,7 +92,6 @@ def test_quick_leaves_a_page_and_pictures(quick):
     }
 
 
-@pytest.mark.slow
 def test_redraw_measures_nothing(quick):
     folder, _ = quick
     page = folder / "page" / "benchmarks.md"

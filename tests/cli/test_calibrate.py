@@ -63,7 +63,6 @@ def calibrated(tmp_path_factory):
     return dem("calibrate", folder / "column.toml", "-o", folder / "out", "--jobs", 2, "-q"), folder
 
 
-@pytest.mark.slow
 def test_the_table_and_the_files(calibrated):
     answer, folder = calibrated
     assert answer.exit_code == 0, answer.output
@@ -85,7 +84,6 @@ def test_the_table_and_the_files(calibrated):
     assert [float(row["failure_load"]) for row in table] == [row["failure_load"] for row in summary["trials"]]
 
 
-@pytest.mark.slow
 def test_loads_fall_with_the_aperture_and_top_displacements_rise(calibrated):
     """Plane joints turn over at b/H; the more a joint gapes, the less the column carries (thesis 7.4.1)."""
     trial = json.loads((calibrated[1] / "out" / "summary.json").read_text())["trials"]
@@ -100,7 +98,6 @@ def test_loads_fall_with_the_aperture_and_top_displacements_rise(calibrated):
         assert row["distance"] == pytest.approx(expected)
 
 
-@pytest.mark.slow
 def test_loads_and_displacements_of_rigid_blocks_that_roll(calibrated):
     """Against statics of rigid blocks on polygons in a circle, with finite rotations (oracle.rolling_column).
 
@@ -114,7 +111,6 @@ def test_loads_and_displacements_of_rigid_blocks_that_roll(calibrated):
         assert row["displacement"] == pytest.approx(exact.top, rel=0.01)
 
 
-@pytest.mark.slow
 def test_the_closest_case_gives_its_load_again(calibrated):
     """calibrated.toml is a case of its own: `dem run` finds the same failure load and the same displacement."""
     _, folder = calibrated
@@ -131,7 +127,6 @@ def test_the_closest_case_gives_its_load_again(calibrated):
     assert again["failure_load_bracket"] == best["failure_load_bracket"]
 
 
-@pytest.mark.slow
 def test_one_process_finds_the_same(calibrated, tmp_path):
     _, folder = calibrated
     answer = dem("calibrate", folder / "column.toml", "-o", tmp_path / "one", "-j", 1, "-q", "--json")

@@ -28,14 +28,12 @@ def site(tmp_path_factory):
     return folder
 
 
-@pytest.mark.slow
 def test_the_site_builds_and_holds_together(site):
     pages = ROOT / "docs"
     for path in pages.rglob("*.md"):
         assert (site / path.relative_to(pages)).with_suffix(".html").exists()
 
 
-@pytest.mark.slow
 def test_wide_tables_are_not_cut(site):
     """On a screen of 1300 pixels the verdicts of docs/verification.md were beyond the edge."""
     cut = """return [...document.querySelectorAll("article table")]

@@ -151,7 +151,6 @@ def killed(process, folder, at_least):
     return lines(folder) - 1
 
 
-@pytest.mark.slow
 def test_killed_again_and_again(case, straight, tmp_path):
     """Nothing is lost, nothing is computed twice, and the table is the same, byte by byte."""
     folder = tmp_path / "killed"

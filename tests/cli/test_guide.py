@@ -13,14 +13,9 @@ from dem_cli.cli.new import TEMPLATE_KINDS
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted((ROOT / "docs" / "guide").glob("*.md"))
-SLOW = {"model", "pictures"}
 
 
-def marked(page: Path):
-    return pytest.param(page, id=page.stem, marks=[pytest.mark.slow] if page.stem in SLOW else [])
-
-
-@pytest.mark.parametrize("page", map(marked, PAGES))
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_page(page, tmp_path, one_core, can_render):
     Reader(tmp_path, can_render).do(page)
 

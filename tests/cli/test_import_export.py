@@ -47,7 +47,6 @@ def case(folder: Path, keys: str, dimension: int = 3) -> str:
     return str(path)
 
 
-@pytest.mark.slow
 def test_200_stones_of_another_program_from_the_file_to_the_report(tmp_path):
     boxes = wall_boxes(14, 14)
     assert len(boxes) > 200

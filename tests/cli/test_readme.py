@@ -5,14 +5,12 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import pytest
 from shown import Reader, blocks
 
 ROOT = Path(__file__).resolve().parents[2]
 README = ROOT / "README.md"
 
 
-@pytest.mark.slow
 def test_everything_shown_works(tmp_path, one_core, can_render):
     Reader(tmp_path, can_render).do(README)
 

@@ -8,8 +8,6 @@ import subprocess
 import sys
 from itertools import product
 
-import pytest
-
 from dem_cli.kernels.compilation.machine_code import cache_folder
 from dem_cli.kernels.contact_forces import make_contact_forces
 from dem_cli.kernels.planar_forces import make_planar_forces
@@ -46,7 +44,6 @@ def test_each_loop_has_a_name_of_its_own():
     assert len({loop.__qualname__ for loop in loops}) == len(loops)
 
 
-@pytest.mark.slow
 def test_second_law_of_a_machine(tmp_path):
     """Four processes share a cache; in the last two the loop over profiles was compiled by two of them."""
     script = tmp_path / "column.py"

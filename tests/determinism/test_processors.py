@@ -7,7 +7,6 @@ import os
 import subprocess
 import sys
 
-import pytest
 from casefiles import CASES
 from numpy._core._multiarray_umath import __cpu_dispatch__
 
@@ -127,7 +126,6 @@ def results(folder, environment: dict[str, str]) -> list[dict]:
     return [json.loads((folder / f"{number}.json").read_text(encoding="utf-8")) for number in range(len(cases))]
 
 
-@pytest.mark.slow
 def test_no_byte_depends_on_the_processor(tmp_path):
     """Kernels of BLAS for this processor and for one of 2004, and NumPy's functions for AVX-512 and without."""
     newest = " ".join(name for name in __cpu_dispatch__ if "512" in name or name == "X86_V4")

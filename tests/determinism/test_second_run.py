@@ -32,7 +32,6 @@ def short_cases() -> list[str]:
     return [str(case) for case in of_all if named.get(case, 9.0) <= SHORT or case.stem in LARGE]
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(not may_be_kept(), reason="code is kept on Linux and x86-64 alone")
 def test_later_runs_of_short_cases_load_no_numba():
     """In one process for all of them; where it had to compile, once more."""

@@ -148,7 +148,6 @@ def small_disk(tmp_path):
     subprocess.run(["umount", "-l", str(disk)], check=True)
 
 
-@pytest.mark.slow
 def test_full_disk(small_disk):
     assert finish(start(small_disk, "quick", small_disk / "out")) == (0, "")
     before = (small_disk / "out" / "summary.json").read_bytes()

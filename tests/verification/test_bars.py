@@ -35,7 +35,6 @@ def hung(path=((0.0, 1.6), (0.0, 0.4)), **more) -> dict:
     )  # fmt: skip
 
 
-@pytest.mark.slow
 def test_corners_of_a_house_where_geometry_moves():
     """Limit analysis and the explicit solver within 1 %; bars that yield and bond are in the books."""
     summary, records = solve(

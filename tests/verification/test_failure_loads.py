@@ -20,7 +20,7 @@ SMALL = {  # of one or two blocks: solved by test_manual.py, all in one process
     "interface_slides", "lever", "slope_of_slip", "stepped_column", "tension_block",
 }  # fmt: skip
 REFERENCED = [path for path in FILES if failure_load(path) and path.stem not in LARGE | SMALL | PROFILED]
-SLOW = {"wall_3", "wall_2", "wall_with_door", "uneven_courses_tall", "heavy_beam", "point_loads_mu060"}
+SLOW = {"wall_3", "wall_2", "wall_with_door", "uneven_courses_tall", "heavy_beam"}
 DEAR = {"facade", "gatehouse"}  # solved for docs/data/loads.json
 SHOWN = [path for path in PLANAR if path.parent == CASES / "gallery" and path.stem not in DEAR]
 MODES = {

@@ -101,7 +101,7 @@ def box(x: float, y: float, width: float, height: float) -> list[list[float]]:
     return [[x, y], [x + width, y], [x + width, y + height], [x, y + height]]
 
 
-@pytest.mark.parametrize("count", [60, pytest.param(1001, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [60, 1001])
 def test_stones_that_lie_elsewhere_change_nothing(count):
     """How the load is reached goes by the largest structure: it was 0.4035 alone, 0.59 beside a thousand stones."""
     case = tomllib.loads((HISTORIES / "load00.toml").read_text())

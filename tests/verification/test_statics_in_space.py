@@ -106,7 +106,6 @@ def test_twins_collapse_as_walls_and_arches_of_the_plane(name):
     assert spatial.rows[-1].monitors == pytest.approx(planar.rows[-1].monitors, rel=0.03)
 
 
-@pytest.mark.slow
 def test_a_wall_turns_over_its_foot_with_geometry_that_moves():
     """Out of plane at t / H = 0.125, and on soft joints at what a stack of the plane carries (P-Δ takes a tenth)."""
     case = read(CASES / "verification" / "space" / "panel.toml")

@@ -304,7 +304,6 @@ del caching.Cache._load_overload
 }
 
 
-@pytest.mark.slow
 def test_a_first_run_with_a_next_numba_answers(tmp_path):
     """The last digits as well. A fresh cache; the second of them finds what the first one kept by numba's own means."""
     case, less = CASES / "verification" / "sliding_block.toml", ["--set", "output.frames=0"]
