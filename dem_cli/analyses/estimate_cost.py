@@ -23,9 +23,9 @@ class Span(NamedTuple):
     least: float
     most: float
 
-    def __add__(self, other: tuple[float, ...]) -> Span:
-        """Both together."""
-        return Span(self.least + other[0], self.most + other[1])
+    def plus(self, least: float, most: float) -> Span:
+        """With so much more."""
+        return Span(self.least + least, self.most + most)
 
     def times(self, least: float, most: float) -> Span:
         """So often."""
@@ -38,15 +38,16 @@ class Span(NamedTuple):
 
 
 START = Span(0.33, 0.65)  # s of every run beside its steps: what is imported, loaded, looked at and written
-STEPS = {  # kind of analysis -> fewest and most steps, by dimension where these differ
-    "gravity": {2: (400, 50_000), 3: (400, 50_000)},
-    "pushover": {2: (30_000, 2_000_000), 3: (13_000, 1_000_000)},
-    "cycle": {2: (10_000, 1_000_000), 3: (10_000, 1_000_000)},
-    "settlement": {2: (15_000, 150_000), 3: (15_000, 150_000)},
-    "safety": {2: (1_500, 60_000), 3: (1_500, 60_000)},  # each of its runs
-    "modes": {2: (400, 50_000), 3: (400, 50_000)},
+STEPS = {  # kind of analysis -> fewest and most steps
+    "gravity": (400, 50_000),
+    "pushover": (30_000, 2_000_000),
+    "cycle": (10_000, 1_000_000),
+    "settlement": (15_000, 150_000),
+    "safety": (1_500, 60_000),  # each of its runs
+    "modes": (400, 50_000),
 }
-CURVE = {2: (60_000, 1_500_000), 3: (60_000, 1_500_000)}  # of a pushover under displacement control
+IN_SPACE = {"pushover": (13_000, 1_000_000)}  # where that differs
+CURVE = (60_000, 1_500_000)  # of a pushover under displacement control
 # Of a pushover on joints whose stiffness is a property, or whose profile is:
 GIVEN = {2: (100_000, 3_000_000), 3: (80_000, 900_000)}
 COLLAPSE = "; where it collapses, ten to thirty times that: how far it stands is sought then"  # of a settlement
@@ -79,12 +80,13 @@ def cost_of(case: Case, sim: Simulation, of_property: bool) -> list[tuple[str, s
         few, many = (steps * runs for steps, runs in zip((few, many), expected(case)))
     moves = sim.kinematics != "fixed" or (of_property and analysis.kinematics == "auto")
     each = costs[sim.kinematics], costs["large" if moves else "fixed"]
-    span = START + Span(few, many).times(1e-9 * points * each[0], 1e-9 * points * each[1])
+    span = START.plus(*Span(few, many).times(1e-9 * points * each[0], 1e-9 * points * each[1]))
     said = f"{each[0]}" if each[0] == each[1] else f"{each[0]} to {each[1]}"
     basis = f"{few:,} to {many:,} steps × {points:,} points × {said} ns"
     if follows := getattr(analysis, "follow", 0.0) > 0.0 and getattr(analysis, "control", "load") == "load":
         fewest, most = FOLLOW_STEPS
-        span += Span(fewest, most).times(1e-9 * points * costs["large"], 1e-9 * points * costs["large"])
+        each_step = 1e-9 * points * costs["large"]
+        span = span.plus(fewest * each_step, most * each_step)
         basis += f", then {fewest:,} to {most:,} × {costs['large']} ns for the collapse"
     collapse = COLLAPSE if analysis.kind == "settlement" else ""
     first = FIRST[d]["large" if moves or follows else "fixed"]
@@ -95,10 +97,11 @@ def _steps(case: Case, dimension: int, of_property: bool) -> tuple[int, int]:
     """Fewest and most steps of such an analysis."""
     if case.analysis.kind == "pushover":
         if case.analysis.control == "displacement":
-            return CURVE[dimension]
+            return CURVE
         if of_property:
             return GIVEN[dimension]
-    return STEPS[case.analysis.kind][dimension]
+    kind = case.analysis.kind
+    return IN_SPACE[kind] if dimension == 3 and kind in IN_SPACE else STEPS[kind]
 
 
 def _first(seconds: tuple[int, int]) -> str:
@@ -123,10 +126,10 @@ def cost_of_shaking(
     span = Span(steps, steps + coda).times(each_step * ENDS_EARLY * runs, each_step * ROCKS * runs)
     again = "" if softer is None else " and once more on softer joints"
     if softer is not None:
-        span += (0.0, each_step * ROCKS * (steps + coda) / softer**0.5)
+        span = span.plus(0.0, each_step * ROCKS * (steps + coda) / softer**0.5)
     each = f"{runs:,} runs × " if runs > 1 else ""
     basis = f"{each}{steps:,} steps × ({points:,} points × {each_point} ns + {PER_STEP} µs){again}"
     return [
-        ("cost", f"{(START + SHOWN[d] + span).words()} ({basis})"),
+        ("cost", f"{span.plus(*START).plus(*SHOWN[d]).words()} ({basis})"),
         ("first run", _first(FIRST[d]["shaken"])),
     ]

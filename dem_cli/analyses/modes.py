@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.arithmetic.functions import agreed
 from dem_cli.arithmetic.products import norm
 from dem_cli.dynamics.frequencies import Modes, highest_frequency, modes, system
 from dem_cli.engine import measures
@@ -75,7 +76,7 @@ def _answer(job: Job, sim: Simulation) -> dict[str, Any]:
             AXES[axis]: found.effective_masses[: wanted.count, axis] for axis in range(model.dimension)
         },
         "total_mass": float(model.masses[~model.fixed].sum()),
-        "highest_frequency": highest_frequency(sim) / (2.0 * math.pi),
+        "highest_frequency": agreed(highest_frequency(sim)) / (2.0 * math.pi),
         "springs": {name: int(points.sum()) for name, points in springs.items()},
         "first_frequency": {name: _first(_modes(sim, points, 1)) for name, points in springs.items()},
         "mechanisms": found.mechanisms,
@@ -100,7 +101,7 @@ def _springs(sim: Simulation, contacts: str) -> np.ndarray:
 
 def _modes(sim: Simulation, closed: np.ndarray, count: int) -> Modes:
     found = system(sim, closed, geometric=sim.kinematics == "large")
-    return modes(found, count, sim.model.dimension, sim.model.n_blocks)
+    return modes(found, count, sim.model.dimension, sim.model.n_blocks).agreed()
 
 
 def closed_points(sim: Simulation) -> np.ndarray:

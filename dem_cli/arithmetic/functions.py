@@ -55,3 +55,9 @@ def agreed(values: Any, digits: int = DIGITS) -> Any:
     if np.ndim(values) == 0:
         return float(f"{float(values):.{digits - 1}e}")
     return np.array([agreed(value, digits) for value in np.ravel(values)], float).reshape(np.shape(values))
+
+
+def agreed_beside(values: np.ndarray, largest: float) -> np.ndarray:
+    """Numbers rounded to the last of the agreed digits of the largest of them."""
+    unit = agreed(largest)
+    return np.round(values / unit, DIGITS) * unit + 0.0 if unit else values  # no −0.0

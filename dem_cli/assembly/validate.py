@@ -246,10 +246,9 @@ def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     inertias = model.inertias.min(axis=1)
     weightless = ~(np.isfinite(model.masses + model.inertias.max(axis=1)) & (np.minimum(model.masses, inertias) > 0.0))
     if not found:
-        for i in np.flatnonzero(weightless):
+        for i in np.flatnonzero(weightless)[:1].tolist():
             message = f"block '{blocks[i].id}' has a mass of {model.masses[i]:g} kg, with which nothing can be computed"
             found.append(CaseProblem(blocks[i].path, f"{message}; its density or its size is far from any stone"))
-            break
     return found
 
 
@@ -258,7 +257,7 @@ def crowd_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
     found = crowd(undeformed(model), model.part_starts)
     if found is None:
         return []
-    first, second = blocks[model.part_blocks[found[0]]], blocks[model.part_blocks[found[1]]]
+    first, second = (blocks[i] for i in model.part_blocks[found[:2]].tolist())
     message = f"block '{second.id}' lies where block '{first.id}' does, and so do {len(found) - 2} others at least"
     return [CaseProblem(second.path, f"{message}; blocks lie beside each other")]
 
@@ -267,8 +266,8 @@ def overlap_problems(model: Model, blocks: Sequence[Block], near: Neighbours, no
     """Two blocks in the same place, the deepest first; two fixed ones may. `note` ends each message."""
     a, b = near.blocks.T
     wrong = (near.separation < -DEEPEST_OVERLAP * near.scale) & (a != b) & ~(model.fixed[a] & model.fixed[b])
-    found, seen = [], set()
-    rest = 0
+    found: list[tuple[tuple, str]] = []
+    seen, rest = set(), 0
     for k in np.nonzero(wrong)[0][np.argsort(near.separation[wrong], kind="stable")]:
         pair = tuple(sorted(near.blocks[k].tolist(), key=lambda i: (blocks[i].path[:1] == ("block",), blocks[i].path)))
         if pair in seen:

@@ -36,7 +36,7 @@ SHARD = re.compile(r"([1-9]\d*)/([1-9]\d*)")
 @overrides_option
 @click.option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Default: results/NAME_sweep.")
 @click.option("-j", "--jobs", type=click.IntRange(min=1), metavar="N", help="Processes; default: all cores.")
-@click.option("--scheduler", metavar="ADDRESS", help="Run on a Dask cluster, such as tcp://host:8786.")
+@click.option("--scheduler", metavar="ADDRESS", help="Run on a Dask cluster, such as tls://host:8786.")
 @click.option("--shard", metavar="I/N", help="Only every N-th run, from the I-th: for job arrays that share DIR.")
 @click.option("--keep", type=click.Choice(["summary", "all"]), default="summary", show_default=True,
               help="summary: no snapshots, no following of the collapse; all: as the case says.")  # fmt: skip
@@ -136,8 +136,10 @@ def spread(
     from dem_cli.pipeline.jobs import do_job
 
     if scheduler is not None:
-        from dem_cli.sweep.cluster import connected, on_cluster
+        from dem_cli.sweep.cluster import connected, doubt, on_cluster
 
+        if line := doubt(scheduler):
+            click.echo(f"warning: {line}", err=True)
         with connected(scheduler, folder) as client:
             yield from on_cluster(client, do_job, jobs)
         return

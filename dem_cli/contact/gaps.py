@@ -2,7 +2,8 @@
 
 A gap of at most CLOSING_GAP of the smaller part is a joint that has yet to close: what lies over it is held up, and on
 the way to failure geometry moves. A wider one is meant to be there: nothing rests on it, and where the geometry of the
-start is kept it stays open. Up to NOTICED_GAP a run says so, with the blocks and the width.
+start is kept it stays open. Up to NOTICED_GAP a run says so, with the blocks and the width. Blocks that are diagonal
+neighbours have no gap, however near their edges or corners are: closed, they would carry no force.
 """
 
 from __future__ import annotations
@@ -24,10 +25,11 @@ CLOSING_GAP = 1e-3  # of the size of the smaller part
 NOTICED_GAP = 0.05  # of the same: wider ones are no joints that anybody forgot to close
 SAMPLED = (0.0, 0.3, 0.6, 0.9)  # of the way from the middle of such a gap to its ends: are other blocks there?
 STEEPEST = 0.1  # sine of the angle between faces that look at each other
+SLIVER = 1e-3  # of the size of the smaller part: faces that look at each other over less are beside each other
 
 
 class StartGaps(NamedTuple):
-    """Pairs of blocks that face each other across a gap, the narrowest first."""
+    """Pairs of blocks across a gap, the narrowest first: faces that look at each other, or a corner over a face."""
 
     blocks: np.ndarray  # (n, 2)
     widths: np.ndarray  # where they are nearest [m], negative: overlap, (n,)
@@ -57,13 +59,15 @@ def gaps_of_start(model: Model) -> StartGaps:
     sizes, corners = model.parts.sizes, undeformed(model)
     typical = median(sizes[~model.fixed[model.part_blocks]]) if not model.fixed.all() else 0.0
     faces = find_joints(model, corners, max(joint_reach(model), NOTICED_GAP * typical))
-    scale = sizes[faces.parts].min(axis=1)
+    scale, narrow = sizes[faces.parts].min(axis=1), geometry_of(model.dimension)
     apart = np.abs(faces.separation) > TOUCHING_GAP * smallest_edge(model)
-    close = joined(faces.separation, scale)
-    facing = geometry_of(model.dimension).facing(model, faces, corners, STEEPEST, CLOSING_GAP * scale)
+    close, least = joined(faces.separation, scale), SLIVER * scale
+    facing = narrow.facing(model, faces, corners, STEEPEST, least)
     noticed = apart & ~close & facing & (faces.separation <= NOTICED_GAP * scale)
     noticed[noticed] = [not _filled(model, faces, corners, k) for k in np.flatnonzero(noticed)]
-    kept = apart & close | noticed
+    closing = apart & close
+    closing[closing] = facing[closing] | narrow.touching(model, faces.where(closing), corners, least[closing])
+    kept = closing | noticed
     blocks, widths, close = model.part_blocks[faces.parts[kept]], faces.separation[kept], close[kept]
     order = np.argsort(widths, kind="stable")
     _, first = np.unique(np.sort(blocks[order], axis=1), axis=0, return_index=True)

@@ -41,8 +41,11 @@ class NarrowPhase(Protocol[Geometry, Returning]):
     def left_out(self, model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
         """Blocks that touch beside their joints, within `reach` [m], (n, 2), and how much of an area [m²], (n,)."""
 
-    def touching(self, model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:
-        """Of faces that are near each other, those that can carry force between blocks that do not move."""
+    def touching(self, model: Model, faces: Faces, corners: np.ndarray, reach: float | np.ndarray) -> np.ndarray:
+        """Whether faces near each other, once they touch, carry force between blocks that do not move, (n,) bool.
+
+        reach: they do not where they share less than that [m], one for all or (n,).
+        """
 
     def facing(self, model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:
         """Whether faces look at each other under an angle of at most this sine, over more than `least` [m], (n,)."""

@@ -83,10 +83,13 @@ def place(joints: Joints, geometry: PlanarGeometry, contacts: Contacts, bodies: 
     (measure_profiles if len(geometry.profile) else measure)(joints, geometry, contacts, bodies)
 
 
-def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:
-    """Those that share a length; faces that meet corner to corner cannot carry force, to first order. reach: [m]."""
+def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float | np.ndarray) -> np.ndarray:
+    """Edges that share a length, (n,) bool; those that meet corner to corner cannot carry force, to first order.
+
+    reach: [m], one for all or (n,).
+    """
     edges = edges_of(model, faces)
-    return faces.where((overlap_lengths(edges, corners) > reach) & ~corner_to_corner(edges, corners, reach))
+    return (overlap_lengths(edges, corners) > reach) & ~corner_to_corner(edges, corners, reach)
 
 
 def facing(model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:
@@ -121,7 +124,7 @@ def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> Draw
     )  # fmt: skip
 
 
-def corner_to_corner(edges: np.ndarray, corners: np.ndarray, reach: float) -> np.ndarray:
+def corner_to_corner(edges: np.ndarray, corners: np.ndarray, reach: float | np.ndarray) -> np.ndarray:
     """Edges under an angle that meet with an end each, closer than `reach` [m], (n,) bool; 2D."""
     a0, a1, b0, b1 = (corners[edges[:, i]] for i in range(4))
     a, b = ((end - start) / np.hypot(*(end - start).T)[:, None] for start, end in ((a0, a1), (b0, b1)))

@@ -84,19 +84,20 @@ def left_out(model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarra
     return model.part_blocks[pairs[kept]], beside[kept]
 
 
-def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float) -> Faces:
-    """Those that share an area, a corner or an edge within a face, or cross with two edges. reach: [m].
+def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float | np.ndarray) -> np.ndarray:
+    """Those that share an area, a corner or an edge within a face, or cross with two edges, (n,) bool.
 
     Blocks that meet edge to edge or corner to corner cannot carry force, to first order.
+    reach: [m], one for all or (n,).
     """
-    found = meetings(model, faces, corners)
-    return faces.where((found.measures[:, MARGIN] > reach) & ~_on_joints(model, faces, corners, found, reach))
+    found, reaches = meetings(model, faces, corners), np.broadcast_to(reach, len(faces.parts))
+    return (found.measures[:, MARGIN] > reaches) & ~_on_joints(model, faces, corners, found, reaches)
 
 
-def _on_joints(model: Model, faces: Faces, corners: np.ndarray, found: Meetings, reach: float) -> np.ndarray:
+def _on_joints(model: Model, faces: Faces, corners: np.ndarray, found: Meetings, reaches: np.ndarray) -> np.ndarray:
     """Edges and corners that meet a block where another part of their block lies on it with a face, (n,) bool.
 
-    That edge is one of the parts, not of the block: what it carries is carried by the face. reach: [m].
+    That edge is one of the parts, not of the block: what it carries is carried by the face. reaches: [m], (n,).
     """
     blocks, repeated = model.part_blocks[faces.parts], np.zeros(len(faces.parts), bool)
     several = np.bincount(model.part_blocks, minlength=model.n_blocks) > 1
@@ -108,11 +109,11 @@ def _on_joints(model: Model, faces: Faces, corners: np.ndarray, found: Meetings,
         others = np.flatnonzero(flat & (of_two == of_two[k]))
         own = np.arange(found.starts[k], found.starts[k + 1])
         nearest = found.gaps[own].min()
-        touching = own[found.gaps[own] <= nearest + reach]
+        touching = own[found.gaps[own] <= nearest + reaches[k]]
         for other in others:
             which = np.full(len(touching), other)
             away = away_from(found.places[touching], which, found.places, found.starts, found.frames[:, :3])
-            repeated[k] |= bool((away <= reach + abs(nearest)).all())
+            repeated[k] |= bool((away <= reaches[k] + abs(nearest)).all())
     return repeated
 
 
@@ -246,8 +247,8 @@ def open_gaps(model: Model, faces: Faces, corners: np.ndarray, steepest: float, 
 def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
     """Outlines of the pairs that are wider than `least` [m]; places on both parts are opposite, across the gap."""
     found = meetings(model, faces, corners)
-    kept = found.widths > least
-    kept &= (found.measures[:, MARGIN] > least) & ~_on_joints(model, faces, corners, found, max(least, 0.0))
+    kept, reaches = found.widths > least, np.full(len(faces.parts), max(least, 0.0))
+    kept &= (found.measures[:, MARGIN] > least) & ~_on_joints(model, faces, corners, found, reaches)
     points, normals = kept[found.owners], found.frames[:, :3]
     across = 0.5 * found.gaps[points, None] * normals[found.owners[points]]
     starts = np.concatenate([[0], np.cumsum(np.diff(found.starts)[kept])])

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.arithmetic.functions import DIGITS, agreed
+from dem_cli.arithmetic.functions import agreed, agreed_beside
 from dem_cli.arithmetic.products import product
 from dem_cli.arithmetic.small_matrices import diagonalised
 from dem_cli.contact.compatibility import compatibility, held_motions
@@ -95,6 +95,16 @@ class Modes(NamedTuple):
     effective_masses: np.ndarray  # that follow a motion of the base along each axis [kg], (n, d)
     mechanisms: int  # motions of free blocks that no joint holds back: without a frequency, not among the above
     loose: np.ndarray  # blocks that take part in these, (n_loose,)
+
+    def agreed(self) -> Modes:
+        """The same rounded to digits that all processors agree on, beside the largest part of each shape."""
+        masses = agreed_beside(self.effective_masses, self.effective_masses.max(initial=0.0))
+        shapes = [agreed_beside(shape, np.abs(shape).max(initial=0.0)) for shape in self.shapes]
+        return self._replace(
+            frequencies=agreed(self.frequencies),
+            effective_masses=masses,
+            shapes=np.array(shapes).reshape(self.shapes.shape),
+        )
 
 
 def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = False) -> System:
@@ -279,14 +289,14 @@ def _largest(found: System) -> tuple[float, np.ndarray | None]:
     matrix = found.matrix
     if n <= settings.dense:
         values, vectors = np.linalg.eigh(matrix.toarray())
-        return agreed(np.sqrt(values[-1])), vectors[:, -1]
+        return float(np.sqrt(values[-1])), vectors[:, -1]
     from scipy.sparse.linalg import ArpackError, eigsh
 
     try:
         values, vectors = eigsh(matrix, k=1, which="LA", v0=start_vector(n), tol=settings.accurate)
     except ArpackError:
         return float(np.sqrt(_gershgorin(matrix).max())), None
-    return agreed(np.sqrt(values[0])), vectors[:, 0]
+    return float(np.sqrt(values[0])), vectors[:, 0]
 
 
 def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
@@ -329,7 +339,7 @@ def _lowest(matrix: csr_array, count: int, settings: FrequencySettings) -> tuple
         values[values < settings.zero * largest] = 0.0
         stop = int((values == 0.0).sum()) + count
         if len(values) >= min(stop, n - 1):
-            return agreed(values[:stop]), np.round(vectors[:, :stop], DIGITS) + 0.0  # no −0.0
+            return values[:stop], vectors[:, :stop]
         asked = max(2 * asked, stop)
 
 

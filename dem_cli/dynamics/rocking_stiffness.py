@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.functions import agreed
 from dem_cli.arithmetic.small_matrices import diagonalised
 from dem_cli.arithmetic.sparse_systems import solved_symmetric
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
@@ -155,7 +156,7 @@ def _work(case: Case, model: Model, joints: Joints, settings: Settings) -> tuple
     """Steps per second of motion times what each costs in contact points, and the step [s], by the joints of the
     start.
     """
-    highest = highest_of(springs_of(model, joints, settings=settings.frequency))
+    highest = agreed(highest_of(springs_of(model, joints, settings=settings.frequency)))
     if highest == 0.0:
         return 0.0, math.inf
     table = case.damping

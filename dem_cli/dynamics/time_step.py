@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+from dem_cli.arithmetic.functions import agreed
 from dem_cli.dynamics.frequencies import limiting
 from dem_cli.dynamics.landing import landing
 from dem_cli.errors import CaseError, CaseProblem
@@ -46,6 +47,7 @@ def time_step(
     infinite where nothing can vibrate. Raises CaseError where `forced` is not stable.
     """
     highest, (loose, pebble) = limiting(sim), landing(sim)
+    highest = highest._replace(frequency=agreed(highest.frequency))
     names: tuple[str, ...] = ()
     if loose > highest.frequency:
         names = (sim.model.block_ids[pebble],)

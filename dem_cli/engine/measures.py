@@ -61,9 +61,9 @@ def round_off(sim: Simulation) -> float:
         return 0.0
     d, joints = sim.model.dimension, sim.joints
     pressing = np.where(sim.contacts.normal > 0.0, joints.kn, 0.0)
-    stiffness = sum(
-        np.bincount(side[joints.owners], weights=pressing, minlength=sim.model.n_blocks) for side in joints.blocks.T
-    )
+    stiffness = np.zeros(sim.model.n_blocks)
+    for side in joints.blocks.T:
+        stiffness += np.bincount(side[joints.owners], weights=pressing, minlength=len(stiffness))
     weights = np.sqrt((sim.loads.dead[:, :d] ** 2).sum(axis=1))
     weighs = (weights > 0.0) & ~sim.model.fixed
     last_digit = np.finfo(float).eps * float(np.abs(sim.bodies.corners).max(initial=0.0))

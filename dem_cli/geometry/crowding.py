@@ -27,7 +27,7 @@ def crowd(corners: np.ndarray, starts: np.ndarray) -> np.ndarray | None:
         return None
     inside = np.flatnonzero(numbers.ravel() == counts.argmax())[:LOOKED_AT]
     low, high = low[inside] + INSIDE * extents[inside], high[inside] - INSIDE * extents[inside]
-    together = ((low[:, None] < high) & (low < high[:, None])).all(axis=2)
+    together: np.ndarray = np.all((low[:, None] < high) & (low < high[:, None]), axis=2)
     fullest = int(together.sum(axis=1).argmax())
     if together[fullest].sum() <= MOST_TOGETHER:
         return None

@@ -66,7 +66,8 @@ class Frames(Sequence[Frame]):
         self, columns: dict[str, Stored], contacts: dict[str, Stored], links: LinkRecord | None = None
     ):  # links: with forces of all frames
         self._columns, self._contacts, self._links = columns, contacts, links
-        self._starts = np.concatenate(([0], np.cumsum(columns.get("n_contacts", np.zeros(0, dtype=np.int64)))))
+        counts = np.asarray(columns["n_contacts"][:] if "n_contacts" in columns else (), np.int64)
+        self._starts = np.concatenate([np.zeros(1, np.int64), np.cumsum(counts)])
 
     def __len__(self) -> int:
         return len(self._starts) - 1

@@ -89,7 +89,10 @@ class ResultWriter:
         return self._files[-1].hdf
 
     def frame(self, frame: Frame) -> None:
-        """Keep a snapshot; it goes to disk, with everything up to it, once some tenths of a second of work wait."""
+        """Keep a snapshot; everything up to it is on disk when this returns.
+
+        In a time history all of that waits until some tenths of a second of work have come together.
+        """
         self._guarded(lambda: self._frame(frame))
 
     def row(self, row: HistoryRow) -> None:
@@ -195,9 +198,14 @@ class ResultWriter:
         self._vtk.add(float(frame.time if self.kind in IN_SECONDS else self.n_frames), frame, now)
         self.n_frames += 1
         self.last_frame = frame
-        if abs(frame.step - self._flushed_step) * (len(frame.contacts.joint) + _OF_A_STEP) >= _UNFLUSHED:
+        if self._awaited(frame):
             self._flushed_step = frame.step
             self._flush()
+
+    def _awaited(self, frame: Frame) -> bool:
+        """Whether a frame goes to disk at once: those of a time history may come faster than a disk is worth."""
+        work = abs(frame.step - self._flushed_step) * (len(frame.contacts.joint) + _OF_A_STEP)
+        return self.kind not in IN_SECONDS or work >= _UNFLUSHED
 
     def _begin_frames(self, links: LinkRecord | None) -> None:
         """The files for ParaView, and what does not change of joints and links."""

@@ -32,6 +32,7 @@ SHAPE_KINDS = frozenset(("modes", "limit"))  # kinds whose displacements have no
 _HAIRLINE = 0.02  # joints open by less than this share of the largest displacement are faint
 _FAINT = len(STATES)  # the code of these
 _FAR_ROUND = 2.0  # rad: who turns farther from frame to frame may have gone the other way round
+_NO_LOAD = 1e-6  # of the largest load of a run: what is less is round-off of none
 _SINGLE = 0.05  # length of a joint of one point, in sizes of its block
 
 
@@ -160,8 +161,9 @@ def _says(frame: Frame, results: Results) -> str:
         return f"mode {frame.step}: {results.summary['frequencies'][frame.step - 1]:.4g} Hz"
     if results.kind in IN_SECONDS:
         return f"{frame.time:.3f} s"
-    loaded = results.history.get("load", np.zeros(0)).any() or results.kind in SHAPE_KINDS
-    return f"λ = {frame.load:.4g}".replace("-", "−") if loaded else ""
+    loads = np.abs(results.history.get("load", np.zeros(0)))
+    load = frame.load if abs(frame.load) > _NO_LOAD * loads.max(initial=0.0) else 0.0
+    return f"λ = {load:.4g}".replace("-", "−") if loads.any() or results.kind in SHAPE_KINDS else ""
 
 
 def _arms(frame: Frame, points: np.ndarray, owners: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from dem_cli.case.base import CaseModel, KeyProblem, Pair, Positive
+from dem_cli.case.base import CaseModel, KeyProblem, Pair, Positive, check_count
 from dem_cli.geometry import cuts, polygon
 
 Profile = np.ndarray  # the top from left to right, (n, 2) [m]
@@ -34,6 +34,7 @@ def gable_profile(gable: Gable, start: float, end: float, foot: float) -> Profil
 def with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:
     """Bed joints [m] with those of courses of that height in a gable: up to its ridge or above; stepped: below it."""
     count = gable.height / course
+    check_count(count, "gable", "height")
     whole = int(np.floor(count + 1e-6)) if gable.edges == "stepped" else int(np.ceil(count - 1e-6))
     return np.concatenate([levels, levels[-1] + course * np.arange(1, max(1, whole) + 1)])
 

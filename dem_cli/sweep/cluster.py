@@ -7,8 +7,10 @@ import secrets
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from ipaddress import ip_address
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 from dem_cli.errors import MissingExtra, SolverError, UsageError
 from dem_cli.interrupts import at_once, insist
@@ -17,6 +19,10 @@ from dem_cli.sweep.pool import ASK, WorkerDeath
 from dem_cli.sweep.run import Summary, SweepJob
 
 CLUSTER_GONE = "the cluster went away; what was done is kept, run the same command again"
+OPEN = (
+    "whoever reaches this scheduler can run code on its workers, as you; give a tls:// address (docs/guide/sweeps.md)"
+)
+PRIVATE = ("tls", "wss", "inproc")  # schemes of addresses that only those with a certificate, or this process, reach
 PATIENCE = 10  # s to reach the scheduler, and to wait for its first worker
 
 
@@ -36,11 +42,26 @@ def connected(address: str, folder: Path) -> Iterator[Any]:
             client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         raise UsageError(f"--scheduler {address}: no Dask scheduler answers ({str(error).splitlines()[0]})") from None
+    except TypeError:  # of Dask, where its configuration names no certificates
+        raise UsageError(f"--scheduler {address}: Dask has no certificates; tell it in distributed.comm.tls "
+                         "(docs/guide/sweeps.md)") from None  # fmt: skip
     try:
         _inspect(client, address, folder)
         yield client
     finally:
         client.close()
+
+
+def doubt(address: str) -> str | None:
+    """A line on a scheduler that others may reach: neither of this machine alone nor behind TLS; None: it is."""
+    parts = urlsplit(address if "://" in address else f"tcp://{address}")
+    if parts.scheme in PRIVATE or parts.hostname == "localhost":
+        return None
+    try:
+        private = ip_address(parts.hostname or "").is_loopback
+    except ValueError:  # a name
+        private = False
+    return None if private else f"--scheduler {address}: {OPEN}"
 
 
 def _inspect(client: Any, address: str, folder: Path) -> None:

@@ -7,6 +7,7 @@ import json
 import re
 import sys
 import tomllib
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -259,6 +260,17 @@ def test_the_view_of_a_structure_in_space(tmp_path):
     open_or_sliding = frames[-1].contacts.state != STATES.index("sticking")
     assert len(unpacked(last["states"])) == 2 * open_or_sliding.sum()  # two halves of edges meet in a corner
     assert STATES.index("sticking") not in unpacked(last["states"])
+
+
+def test_a_load_that_is_round_off_of_none_is_none(tmp_path):
+    """After a collapse the view said λ = 1.364e−09."""
+    from dem_cli.output.reader import read
+
+    results = read(wall(tmp_path / "wall"))
+    last = results.frames[-1]
+    shots = [last._replace(load=load) for load in (1.364e-9, -3e-10, 0.05, -0.05)]
+    said = [frame["says"] for frame in view(replace(results, frames=shots))["frames"]]
+    assert said == ["λ = 0", "λ = 0", "λ = 0.05", "λ = −0.05"]
 
 
 def test_the_view_of_motion_in_space(tmp_path):

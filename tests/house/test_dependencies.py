@@ -8,6 +8,8 @@ import sys
 import tomllib
 from pathlib import Path
 
+from dem_cli.version import __version__
+
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 IMPORT_NAMES = {  # distribution: how it is imported
@@ -57,6 +59,15 @@ def test_extras_are_used():
     for distribution, extra in EXTRA_OF.items():
         assert distribution in names(PROJECT["optional-dependencies"][extra])
     assert imported("dem_cli", "tests") == modules(EVERY)
+
+
+def test_the_citation_is_of_this_version_and_these_authors():
+    lines = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
+    found = dict(line.split(": ", 1) for line in lines if re.match(r"[a-z-]+: ", line))
+    assert (found["cff-version"], found["type"]) == ("1.2.0", "software")
+    assert (found["version"], found["license"]) == (__version__, PROJECT["license"])
+    assert f"\n## {__version__} - {found['date-released'].strip(chr(34))}\n" in (ROOT / "CHANGELOG.md").read_text()
+    assert [line.strip() for line in lines if "- name: " in line] == [f"- name: {PROJECT['authors'][0]['name']}"]
 
 
 def test_everything_declared_is_pinned():

@@ -177,7 +177,7 @@ ALLOWED: dict[str, set[str] | None] = {
     "version": set(),
     "__main__": {"cli"},
 }
-FOR_ALL = {"arithmetic", "errors", "input_limits", "interrupts", "registration", "version"}  # for every room
+FOR_ALL = {"arithmetic", "errors", "input_limits", "interrupts", "registration", "version"}  # every room may have them
 LARGEST = 25  # files of a package, without its __init__.py
 IN_KERNELS = {"numba", "numpy", "math", "__future__", "collections", "typing"}
 AT_THE_DOOR = {

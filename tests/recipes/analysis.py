@@ -73,7 +73,7 @@ RECIPE = Recipe(
         (FACTS, "_ANSWERS = {\n", '_ANSWERS = {\n    "weight": _weight,\n'),
         (FACTS, "def _limit(summary", ANSWER),
         ("dem_cli/output/summary.py", '    "vary",\n', '    "weight",\n    "vary",\n'),
-        ("dem_cli/analyses/estimate.py", "STEPS = {", 'STEPS = {"weight": (500, 50_000),'),
+        ("dem_cli/analyses/estimate_cost.py", "STEPS = {", 'STEPS = {"weight": (500, 50_000),'),
         ("dem_cli/case/explain.py", "DOC_PAGES = {", 'DOC_PAGES = {"analysis.weight": "docs/numerics.md",'),
         ("dem_cli/pipeline/monitor_names.py", 'STATIC = ("gravity",', 'STATIC = ("weight", "gravity",'),
         ("docs/glossary.md", "`gravity`, `cycle`,", "`gravity`, `weight`, `cycle`,"),

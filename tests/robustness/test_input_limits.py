@@ -9,10 +9,11 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from studies.site.limits import LIMITS
 
 from dem_cli import input_limits
 from dem_cli.cli.main import main
-from dem_cli.input_limits import LIMITS, MOST_CORNERS, MOST_MISTAKES, MOST_TOGETHER, UnreadableInput, read_bounded
+from dem_cli.input_limits import MOST_CORNERS, MOST_MISTAKES, MOST_TOGETHER, UnreadableInput, read_bounded
 
 JOINT = "[materials.s]\ndensity = 2000.0\n[joints.d]\nfriction = 0.5\n"
 SPACE = f"dimension = 3\n{JOINT}"
@@ -71,6 +72,11 @@ REFUSED = {
         f'{SPACE}[[structure]]\nkind = "vault"\nshape = "barrel"\nspan = 4.0\nlength = 4.0\nthickness = 0.3\n'
         "rise = 1.0\nvoussoirs = 10000\nrows = 10000",
         "1e+08 blocks are too many",
+    ),
+    "courses of a gable": (
+        f'{SPACE}[[structure]]\nkind = "building"\nblock = [0.5, 0.2, 0.3]\ncourses = 3\n[[structure.walls]]\n'
+        "id = 'w'\naxis = [[0.0, 0.0], [4.0, 0.0]]\ngable = { height = 1e18 }",
+        "gable.height: 5e+18 blocks are too many",
     ),
     "frames": (f"{COLUMN}[output]\nframes = 1000000000", "output.frames: 1000000000 is not allowed"),
     "mistakes": (COLUMN + "".join(f"x{k} = 1\n" for k in range(600)), "and 100 more mistakes"),
@@ -154,5 +160,5 @@ def test_every_limit_is_on_the_page():
     rows = [line for line in page.splitlines() if line.startswith("| ") and not line.startswith(("| what", "| ---"))]
     assert len(rows) == sum(map(len, LIMITS.values()))
     told = {limit.most for limits in LIMITS.values() for limit in limits}
-    constants = {name: value for name, value in vars(input_limits).items() if name.isupper() and name != "LIMITS"}
+    constants = {name: value for name, value in vars(input_limits).items() if name.isupper()}
     assert {name for name, value in constants.items() if value not in told and not name.startswith("_")} == set()

@@ -28,15 +28,25 @@ FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 NAME = re.compile(r"# ([\w./-]+\.toml)\n")
 EXIT = re.compile(r"# exit (\d)$")
 TIMES = re.compile(r"\d[\d.,]* (ms|s|min|h)\b")
-INSTALLS, A_CLUSTER, LONG = "installs", "a cluster", "takes minutes"
+INSTALLS, A_CLUSTER, A_SHELL, LONG = "installs", "a cluster", "of an interactive shell", "takes minutes"
 NOT_RUN = {  # everything else is run
     "scripts/test": LONG,
     "python3 -m venv .venv": INSTALLS,
     "source .venv/bin/activate": INSTALLS,
     "pip install --constraint constraints.txt .": INSTALLS,
-    "dask scheduler --port 8786": A_CLUSTER,
-    "dask worker tcp://head:8786 --nworkers 16 --nthreads 1": A_CLUSTER,
-    "dem sweep wall.toml --scheduler tcp://head:8786": A_CLUSTER,
+    'eval "$(_DEM_COMPLETE=bash_source dem)"': A_SHELL,
+    "dask scheduler --host 127.0.0.1 --port 8786": A_CLUSTER,
+    "dask worker tcp://127.0.0.1:8786 --nworkers 16 --nthreads 1": A_CLUSTER,
+    "dem sweep wall.toml --scheduler tcp://127.0.0.1:8786": A_CLUSTER,
+    'openssl req -x509 -newkey rsa:2048 -nodes -keyout key.pem -out cert.pem -days 30 -subj "/CN=dask"': A_CLUSTER,
+    "chmod 600 key.pem": A_CLUSTER,
+    'tls="--tls-ca-file cert.pem --tls-cert cert.pem --tls-key key.pem"': A_CLUSTER,
+    "dask scheduler --protocol tls --port 8786 $tls": A_CLUSTER,
+    "dask worker tls://head:8786 --nworkers 16 --nthreads 1 $tls": A_CLUSTER,
+    "export DASK_DISTRIBUTED__COMM__TLS__CA_FILE=cert.pem": A_CLUSTER,
+    "export DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT=cert.pem": A_CLUSTER,
+    "export DASK_DISTRIBUTED__COMM__TLS__CLIENT__KEY=key.pem": A_CLUSTER,
+    "dem sweep wall.toml --scheduler tls://head:8786": A_CLUSTER,
     "sbatch --array=1-8 --wrap 'dem sweep wall.toml -o sweep --shard $SLURM_ARRAY_TASK_ID/8'": A_CLUSTER,
     "dem verify --write docs/verification.md": LONG,
 }

@@ -188,7 +188,7 @@ def test_what_round_off_leaves_too_soft_is_said():
 
 
 def test_a_block_on_two_points_side_by_side_does_not_turn_into_its_neighbours():
-    """A block over the head joint of the course below: closures 10 µm apart that differ by 0.5 µm are no turn."""
+    """A block over a head joint: closures that differ by 0.5 µm, 10 µm apart, are no turn of 0.05 (which it made)."""
     supports = [
         block("left", rectangle(-1, -1, 0, 0), fixed=True),
         block("right", rectangle(1e-5, -1, 1, 0), fixed=True),

@@ -24,7 +24,9 @@ __all__ = ["cache_folder", "cache_is_cold", "compiled_sources", "fingerprint"]
 
 _ROOT = Path(__file__).resolve().parents[2]
 _ROOMS = ("kernels", "laws", "links")
-_ELSEWHERE = ("limit/front_factors.py", "limit/compiled_cones.py", "bench/bare_loop.py")
+_ELSEWHERE = (
+    "arithmetic/symmetric_factors.py", "limit/front_factors.py", "limit/compiled_cones.py", "bench/bare_loop.py",
+)  # fmt: skip
 
 
 def _compiler() -> bytes:

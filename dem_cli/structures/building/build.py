@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from dem_cli.arithmetic.products import norm, product
-from dem_cli.case.base import KeyProblem
+from dem_cli.case.base import KeyProblem, check_count
 from dem_cli.geometry import polyhedron
 from dem_cli.geometry.halfspaces import behind_all
 from dem_cli.geometry.polyhedron import Polyhedron
@@ -119,6 +119,7 @@ def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pock
     levels = building.levels[: courses[wall] + 1]
     eaves = float(levels[-1])
     if table.gable is not None:
+        check_count(table.gable.height / building.block[1], "walls", wall, "gable", "height")
         levels = _with_gable(levels, table.gable, building.block[1])
 
     def present(other: int, course: int) -> bool:

@@ -111,3 +111,6 @@ def test_functions():
 def test_agreed_digits():
     assert functions.agreed(123.45678904) == functions.agreed(123.45678904 * (1.0 + 1e-14)) == 123.456789
     assert functions.agreed([[1.0 / 3.0, 0.0, -np.inf]]).tolist() == [[0.333333333, 0.0, -np.inf]]
+    beside = functions.agreed_beside(np.array([2.0, 1.0 / 3.0, -1e-17]), 2.0)
+    assert beside.tolist() == pytest.approx([2.0, 0.333333334, 0.0], abs=1e-15)
+    assert not np.signbit(beside).any()

@@ -218,7 +218,7 @@ def test_not_text_and_not_there(tmp_path):
     (tmp_path / "r.bin").write_bytes(b"0,1\n\x00\xff")
     with pytest.raises(RecordError, match=r"r.bin: not a text file \(byte 4\)"):
         read_series(tmp_path / "r.bin")
-    with pytest.raises(RecordError, match="cannot be read"):
+    with pytest.raises(RecordError, match="is a folder"):
         read_series(tmp_path)
 
 

@@ -155,3 +155,19 @@ def test_summary_is_strict_json_in_a_fixed_order():
     assert found["failure_load"] == 0.1 + 0.2
     assert found["time_step"] is None
     assert found["extra"] == [None, 1.0]
+
+
+@pytest.mark.parametrize(("kind", "steps", "on_disk"), [
+    ("pushover", 1, 3), ("time-history", 1, 1), ("time-history", 10_000_000, 3),
+])  # fmt: skip
+def test_frames_of_a_history_wait_for_each_other(tmp_path, kind, steps, on_disk):
+    """Putting each on disk took a quarter of a short history; one that many steps lead to goes at once."""
+    model = wall_model()
+    writer = ResultWriter(tmp_path, model, "", {"dem": "0.1.0", "numpy": "2"}, (), kind)
+    for k, frame in enumerate(wall_frames(model)[:3]):
+        writer.frame(frame._replace(step=steps * k))
+    with h5py.File(tmp_path / "results.h5") as file:
+        assert len(file["dem/frames/step"]) == on_disk
+    writer.close(wall_summary())
+    with h5py.File(tmp_path / "results.h5") as file:
+        assert len(file["dem/frames/step"]) == 3

@@ -191,3 +191,18 @@ def test_svg_groups_are_layers(tmp_path):
     found = {block.id: block for block in generated_blocks(table, 1)}
     assert found["lintel-1"].parts[0].tolist() == [[0.7, 2.0], [2.3, 2.0], [2.3, 2.3], [0.7, 2.3]]
     assert table.outline.unspanned == []
+
+
+def test_rubble_in_an_outline_is_written_with_its_case():
+    """Tables keep arrays of what was drawn beside their keys: those are not compared."""
+    from dem_cli.case.writer import effective
+    from dem_cli.structures.patterns.voronoi_wall import VoronoiWall
+
+    given = {
+        "kind": "voronoi-wall",
+        "cells": 12,
+        "outline": {"points": [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 3.0]]},
+    }
+    table = VoronoiWall.model_validate(given)
+    assert table.outline.drawn.size == (4.0, 3.0)
+    assert effective(table)["cells"] == 12

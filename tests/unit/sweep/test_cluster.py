@@ -8,6 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
+
+from dem_cli.cli.main import main
+from dem_cli.errors import UsageError
+from dem_cli.sweep.cluster import doubt
 
 ROOT = Path(__file__).resolve().parents[3]
 SCRIPT = """
@@ -34,6 +39,35 @@ if __name__ == "__main__":
             for number, result in on_cluster(client, deadly.work, [deadly.Job(f"job-{n}", n) for n in range(6)]):
                 print("result", number, result["number"] if isinstance(result, dict) else type(result).__name__)
 """
+
+
+@pytest.mark.parametrize(
+    ("address", "alone"),
+    [
+        ("tcp://127.0.0.1:8786", True),
+        ("localhost:8786", True),
+        ("tcp://[::1]:8786", True),
+        ("tls://head:8786", True),
+        ("inproc://10.0.0.5/1/1", True),
+        ("tcp://head:8786", False),
+        ("tcp://10.0.0.5:8786", False),
+        ("0.0.0.0:8786", False),
+        ("ws://head:80/x", False),
+    ],
+)
+def test_a_scheduler_that_others_may_reach_is_doubted(address, alone):
+    assert (doubt(address) is None) is alone
+
+
+def test_a_sweep_says_so(tmp_path, monkeypatch):
+    def away(address, folder):
+        raise UsageError("no scheduler")
+
+    monkeypatch.setattr("dem_cli.sweep.cluster.connected", away)
+    (tmp_path / "case.toml").write_text(CliRunner().invoke(main, ["new", "sweep"]).stdout, encoding="utf-8")
+    words = ["sweep", str(tmp_path / "case.toml"), "-q", "-o", str(tmp_path / "out"), "--scheduler", "tcp://head:8786"]
+    said = CliRunner().invoke(main, words).stderr
+    assert "warning: --scheduler tcp://head:8786: whoever reaches this scheduler can run code on its workers" in said
 
 
 @pytest.mark.slow
