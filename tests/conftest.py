@@ -1,10 +1,12 @@
-"""Shared by all tests: one cache of compiled code, no display, `python -m dem_cli` from any folder."""
+"""Shared by all tests: one cache of compiled code, no display, `python -m dem_cli` from any folder, what is slow."""
 
 from __future__ import annotations
 
 import os
 import signal
 from pathlib import Path
+
+import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -19,3 +21,12 @@ os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (*FOLDERS, os.environ.ge
 # As `dem bench` has it: threads of libraries beside two workers of the tests gain nothing.
 for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ.setdefault(name, "1")
+
+
+@pytest.hookimpl(tryfirst=True)  # before -m chooses
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Marks as slow what tests/slow_tests.txt names."""
+    named = set(Path(__file__).with_name("slow_tests.txt").read_text(encoding="utf-8").splitlines())
+    for item in items:
+        if named & {item.nodeid, item.nodeid.split("[")[0]}:
+            item.add_marker(pytest.mark.slow)

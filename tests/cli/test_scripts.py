@@ -1,4 +1,4 @@
-"""scripts/run on machines that lack something: one clear message, exit code 2, nothing made."""
+"""The scripts on machines that lack something: one clear message, exit code 2, nothing made; which tests they run."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -51,9 +52,11 @@ def made_environment(project: Path) -> Path:
     return venv
 
 
-def run(project: Path, script: str = "run", home: bool = True) -> subprocess.CompletedProcess:
+def run(
+    project: Path, script: str = "run", home: bool = True, words: Sequence[str] = ("case.toml",)
+) -> subprocess.CompletedProcess:
     environment = {"PATH": str(project / "bin")} | ({"HOME": str(project)} if home else {})
-    command = [str(project / "scripts" / script), "case.toml"]
+    command = [str(project / "scripts" / script), *words]
     return subprocess.run(command, env=environment, cwd=project, capture_output=True, text=True)
 
 
@@ -109,6 +112,31 @@ def test_documentation_finds_what_it_reads(project):
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert "--write" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "given"),
+    [
+        (["tests/laws"], ["-m", "not slow", "tests/laws"]),
+        (["--all"], []),
+        (["--all", "-k", "a b"], ["-k", "a b"]),
+        (["-k", "--all"], ["-m", "not slow", "-k", "--all"]),  # an option of pytest's
+    ],
+)
+def test_slow_tests_are_run_with_all(project, words, given):
+    (project / "bin" / "mktemp").symlink_to(shutil.which("mktemp"))
+    says = '#!/usr/bin/env bash\n[ "$2" != pytest ] || printf "%s\\n" "$@"\n'
+    (made_environment(project) / "bin" / "python").write_text(says)
+    done = run(project, "test", words=words)
+    assert done.returncode == 0, done.stderr
+    said = done.stdout.splitlines()
+    assert said[:2] == ["-m", "pytest"]
+    assert said[said.index("5") + 1 :] == given
+
+
+def test_continuous_integration_runs_all_tests():
+    last = (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()[-1]
+    assert last.endswith('/../scripts/test" --all "$@"')
 
 
 @pytest.mark.parametrize("script", ["scripts/run", "scripts/test", "scripts/study", "scripts/docs", ".ci/run"])
