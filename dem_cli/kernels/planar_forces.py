@@ -31,7 +31,7 @@ def make_planar_forces(
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers.
     meets: points close and open without a loss of energy (`meeting`), in time histories.
-    rigid: closure that was taken back (engine/rigid_joints.py) presses without an overlap; jolts are booked. In statics.
+    rigid: closure that was taken back (engine/rigid_joints.py) presses without an overlap, jolts are booked: statics.
     strains: blocks deform (kernels/deformation); their edges stay straight.
     """
     press, books = make_press(law, bonded), rigid and not bonded
