@@ -172,6 +172,7 @@ def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) 
         closure=np.zeros(n_points),
         stale=np.zeros(n_joints + 1, np.int8),
         exchanged=np.zeros(2),
+        jolts=np.zeros(1),
     )
 
 

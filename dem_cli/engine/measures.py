@@ -177,7 +177,7 @@ def energy(sim: Simulation) -> Energy:
         gravity=gravity,
         external=float(books.ledger[slot.EXTERNAL]) + gravity,
         friction=float(books.ledger[slot.FRICTION]),
-        damping=float(books.ledger[slot.DAMPING]),
+        damping=float(books.ledger[slot.DAMPING] + books.ledger[slot.JOLT]),
         supports=float(books.ledger[slot.SUPPORT]),
         dashpots=float(books.ledger[slot.DASHPOT]),
         mass_damping=float(books.ledger[slot.MASS]),

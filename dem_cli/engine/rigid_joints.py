@@ -69,8 +69,7 @@ def take_back(sim: Simulation, points: np.ndarray) -> None:
     closure = np.minimum(gaps, 0.0)  # of open points: they stay open
     closure[points] = gaps[points] + sim.contacts.normal[points] / sim.joints.kn[points]
     sim.contacts.closure[:] = closure
-    if sim.joints.points.shape[1] > 2:  # where points may be renewed, new ones go on from the gaps of the last step
-        sim.contacts.gaps[:] = gaps
+    sim.contacts.gaps[:] = gaps  # the next step goes on from here
 
 
 def motion_that_opens(sim: Simulation, points: np.ndarray, gaps: np.ndarray) -> np.ndarray:

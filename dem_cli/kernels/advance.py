@@ -26,6 +26,7 @@ from dem_cli.kernels.records import (
     FIRE_START,
     FRICTION,
     GUIDED,
+    JOLT,
     LIVE,
     LIVE_FACTOR,
     MEAN_LOAD,
@@ -297,6 +298,8 @@ def make_advance(
             done += 1
             if moved > control[TRAVEL_LIMIT] or contacts.stale[-1] != 0:
                 break
+        ledger[JOLT] += contacts.jolts[0]
+        contacts.jolts[0] = 0.0
         control[UNBALANCED] = largest_unbalanced(previous, force_scales)
         control[MEAN_LOAD] = mean_load / done
         return done

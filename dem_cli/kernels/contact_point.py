@@ -24,6 +24,18 @@ def meeting(gap, opened):
 
 
 @always_inline
+def jolt(gap, opened, before, after):
+    """Work that a step takes which closes a point, beyond what its spring stores; negative: gives, which opens it [J].
+
+    gap: after the step [m]; before, after: normal forces [N]. Work is the mean of both forces × the way between them,
+    gap and all, while a spring knows but its own part of the way: what a point falls through counts half its force.
+    """
+    if before < 0.0 or after < 0.0 or before * after != 0.0:
+        return 0.0
+    return 0.5 * (after * max(gap - opened, 0.0) - before * max(gap, 0.0))
+
+
+@always_inline
 def plastic_slide(old, shear, slide, ks):
     """What of a slide the shear spring did not take up: slide + Δs/ks [m]."""
     return axpy(1.0 / ks, axpy(-1.0, old, shear), slide)

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import add_force, make_press, meeting, push_apart
+from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart
 from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
@@ -31,10 +31,10 @@ def make_planar_forces(
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers.
     meets: points close and open without a loss of energy (`meeting`), in time histories.
-    rigid: closure that was taken back (engine/rigid_joints.py) presses without an overlap, in statics.
+    rigid: closure that was taken back (engine/rigid_joints.py) presses without an overlap, jolts are booked: statics.
     strains: blocks deform (kernels/deformation); their edges stay straight.
     """
-    press = make_press(law, bonded)
+    press, books = make_press(law, bonded), rigid and not bonded
 
     @inline
     def planar_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
@@ -44,7 +44,7 @@ def make_planar_forces(
         gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
         stretchings, d = bodies.stretchings, len(like)
-        friction_work = 0.0
+        friction_work = jolts = 0.0
         for number in range(blocks.shape[0]):
             joint = np.uint64(number)
             i, j = np.uint64(edges[joint, 0]), np.uint64(edges[joint, 1])
@@ -95,7 +95,10 @@ def make_planar_forces(
                 if strains:
                     arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
                     slide = axpy(dt, spread_between(frame, gradient_a, gradient_b, arm_a, arm_b), slide)
+                pressed = normals[first]
                 normal, shear, work = press(gap_low, opened_low, slide, joints, contacts, joint, first)
+                if books and not wrong:
+                    jolts += jolt(gap_low, opened_low, pressed, normal)
                 friction_work += work
                 force, torque_a, torque_b = add_force(
                     frame, levers_a, levers_b, normal, shear, force, torque_a, torque_b
@@ -112,7 +115,10 @@ def make_planar_forces(
                 if strains:
                     arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
                     slide = axpy(dt, spread_between(frame, gradient_a, gradient_b, arm_a, arm_b), slide)
+                pressed = normals[second]
                 normal, shear, work = press(gap_high, opened_high, slide, joints, contacts, joint, second)
+                if books and not wrong:
+                    jolts += jolt(gap_high, opened_high, pressed, normal)
                 friction_work += work
                 force, torque_a, torque_b = add_force(
                     frame, levers_a, levers_b, normal, shear, force, torque_a, torque_b
@@ -120,6 +126,8 @@ def make_planar_forces(
                 if strains:
                     stretch_apart(bodies.dyads, a, b, compose(frame, normal, shear, scale(0.0, like)), arm_a, arm_b)
             push_apart(forces, a, b, force, torque_a, torque_b)
+        if books:
+            contacts.jolts[0] += jolts
         return friction_work
 
     flags = {"bonded": bonded, "keeps": keeps, "meets": meets, "rigid": rigid, "strains": strains}

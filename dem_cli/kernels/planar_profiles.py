@@ -14,7 +14,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import add_force, make_press, meeting, push_apart
+from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart
 from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
 from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
@@ -73,7 +73,7 @@ def make_profiled_forces(
     loop keeps gaps, frames, levers and points up to date, for detection and records. rigid, strains: as in
     planar_forces.py. bends: blocks have quadratic modes as well (kernels/deformation/quadratic.py).
     """
-    press = make_press(law, bonded)
+    press, books = make_press(law, bonded), rigid and not bonded
 
     @inline
     def profiled_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
@@ -86,7 +86,7 @@ def make_profiled_forces(
         sunk = geometry.sunk
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
         stretchings, d = bodies.stretchings, len(like)
-        lost = 0.0
+        lost = jolts = 0.0
         for number in range(blocks.shape[0]):
             joint = np.uint64(number)
             a0 = load(corners, np.uint64(edges[joint, 0]), 0, like)
@@ -201,7 +201,10 @@ def make_profiled_forces(
                     slide = axpy(dt, spread_between(frame, gradient_a, gradient_b, arm_a, arm_b), slide)
                 if bends:
                     slide = (slide[0] + dt * apart_at(bending, way, frame)[1],)
+                pressed = normals[point]
                 normal, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
+                if books and faces:
+                    jolts += jolt(gap, opened, pressed, normal)
                 lost += work
                 force, torque_a, torque_b = add_force(
                     frame, levers_a, levers_b, normal, shear, force, torque_a, torque_b
@@ -214,6 +217,8 @@ def make_profiled_forces(
                 push_apart(forces, a, b, force, torque_a, torque_b)
                 if bends:
                     bend_apart(bodies.triads, bodies.turns, a, b, end_a, end_b, tb, sums)
+        if books:
+            contacts.jolts[0] += jolts
         return lost
 
     flags = {"bonded": bonded, "keeps": keeps, "places": places, "meets": meets, "rigid": rigid, "strains": strains}

@@ -230,6 +230,7 @@ class Contacts(NamedTuple):
     exchanged: (
         np.ndarray
     )  # elastic energy that went with areas that changed [J]: net (negative: made), sum of amounts, (2,)
+    jolts: np.ndarray  # work of the present call by `contact_point.jolt` [J], (1,)
 
 
 class Loads(NamedTuple):
@@ -311,7 +312,8 @@ class Watch(NamedTuple):
 # Slots of the vector `ledger`: sums over steps [J].
 EXTERNAL, CONTACT, DAMPING, FRICTION, SUPPORT, DASHPOT, MASS, MAXWELL = 0, 1, 2, 3, 4, 5, 6, 7
 LIVE = 8  # what of EXTERNAL live loads gave
-N_LEDGER = 9
+JOLT = 9  # what steps took in which points closed, less what those gave in which they opened, in pseudo-time
+N_LEDGER = 10
 
 # Slots of the vector `control`.
 DEAD_FACTOR = 0  # multiplies dead loads

@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import make_press, meeting, push_apart
+from dem_cli.kernels.contact_point import jolt, make_press, meeting, push_apart
 from dem_cli.kernels.deformation.matrices import load_matrix, times
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
@@ -95,7 +95,7 @@ def make_spatial_forces(
     (kernels/deformation); their faces stay plane, and geometry is measured in each step.
     """
     assert remembers <= MOST_LEFT
-    press, holds = make_press(law, bonded), meets and not strains
+    press, holds, books = make_press(law, bonded), meets and not strains, rigid and not bonded
 
     @inline
     def spatial_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
@@ -105,7 +105,7 @@ def make_spatial_forces(
         gaps, normals, closures = contacts.gaps, contacts.normal, contacts.closure
         velocities, forces, positions = bodies.velocities, bodies.forces, bodies.positions
         stretchings, d = bodies.stretchings, len(like)
-        lost = 0.0
+        lost = jolts = 0.0
         for number in range(blocks.shape[0]):
             joint = np.uint64(number)
             a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
@@ -147,7 +147,10 @@ def make_spatial_forces(
                     continue
                 n_loaded += 1
                 slide = (dt * dot(moved, frame[1]), dt * dot(moved, frame[2]))
+                before = normals[point]
                 pressed, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
+                if books:
+                    jolts += jolt(gap, opened, before, pressed)
                 n_touch += 1 if pressed != 0.0 else 0
                 lost += work
                 pushed = compose(frame, pressed, shear, scale(0.0, like))
@@ -160,6 +163,8 @@ def make_spatial_forces(
                 joints.held[joint] = n_touch if held else -1 - n_touch
             if n_loaded > 0:
                 push_apart(forces, a, b, force, torque_a, torque_b)
+        if books:
+            contacts.jolts[0] += jolts
         return lost
 
     flags = {"bonded": bonded, "meets": meets, "rigid": rigid, "capped": capped}

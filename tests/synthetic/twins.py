@@ -82,7 +82,7 @@ def _joints(joints: FixedJoints, layers: np.ndarray) -> FixedJoints:
 
 
 def _contacts(contacts: Contacts, m: int) -> Contacts:
-    as_wholes = {name: getattr(contacts, name).copy() for name in ("stale", "exchanged")}
+    as_wholes = {name: getattr(contacts, name).copy() for name in ("stale", "exchanged", "jolts")}
     points = {name: values for name, values in contacts._asdict().items() if name not in as_wholes}
     each = Contacts(**{name: values.repeat(m, axis=0) for name, values in points.items()}, **as_wholes)
     shear = np.column_stack([each.shear / m, np.zeros(len(each.gaps))])
