@@ -136,7 +136,8 @@ def test_runs_of_a_sweep_without_an_answer_are_drawn_as_in_the_picture(opened):
     page.run(
         """const data = dem.runs.data, load = data.columns.indexOf("failure_load");
         data.columns.push("failure_load_bracket.0", "failure_load_bracket.1");
-        for (const row of data.rows) row.push(...({ a0: [0.25, 0.35], a2: [0.4, 0.9], a3: [0.2, null] })[row[0]] ?? [null, null]);
+        const known = { a0: [0.25, 0.35], a2: [0.4, 0.9], a3: [0.2, null] };
+        for (const row of data.rows) row.push(...(known[row[0]] ?? [null, null]));
         for (const row of data.rows) if (["a2", "a3"].includes(row[0])) row[load] = null;
         dem.runs.show()"""
     )
