@@ -151,3 +151,11 @@ def test_digits_without_end(case_file):
 def test_overrides_without_end(value, case_file):
     with pytest.raises(CaseError, match=r"--set gravity: .* is not allowed; must be a number"):
         load_case(case_file(WALL), [f"gravity={value}"])
+
+
+@pytest.mark.parametrize(("text", "column"), [("density = 2300 kg", 16), ("friction = 0,6", 13)])
+def test_units_and_decimal_commas(text, column, case_file):
+    """The words of the parser, "expected newline or end of document", did not say what is wrong."""
+    words = rf"case.toml:1:{column}: not valid TOML: something follows the value \(numbers have no unit and a decimal point"
+    with pytest.raises(CaseError, match=words):
+        load_case(case_file(f"{text}\n{WALL}"))
