@@ -156,6 +156,21 @@ def test_overrides_without_end(value, case_file):
 @pytest.mark.parametrize(("text", "column"), [("density = 2300 kg", 16), ("friction = 0,6", 13)])
 def test_units_and_decimal_commas(text, column, case_file):
     """The words of the parser, "expected newline or end of document", did not say what is wrong."""
-    words = rf"case.toml:1:{column}: not valid TOML: something follows the value \(numbers have no unit and a decimal point"
+    words = (
+        rf"case.toml:1:{column}: not valid TOML: something follows the value \(numbers have no unit and a decimal point"
+    )
     with pytest.raises(CaseError, match=words):
         load_case(case_file(f"{text}\n{WALL}"))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("friction =", "cohesion = 1e5\nfriction =", "cohesion: unknown key of law = 'coulomb'; found in law = 'mohr-"),
+        ("courses =", "ring = 0.5\ncourses =", "ring: unknown key of kind = 'wall'; found in kind = 'arch'"),
+    ],
+)
+def test_a_key_of_another_law_or_kind(old, new, message, case_file):
+    """Cohesion of a joint of friction alone was refused with a list of other keys, tension with another one's name."""
+    with pytest.raises(CaseError, match=message):
+        load_case(case_file(WALL.replace(old, new, 1)))
