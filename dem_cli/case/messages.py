@@ -186,7 +186,8 @@ def unknown_key(name: str, owner: type[BaseModel] | None, kin: Sequence[Declared
     names = list(owner.model_fields) if owner else []
     tables = [member.type for member in kin if is_table(member.type)]
     tags = [tag_of(table) for table in tables if name in table.model_fields] if owner in tables else []
-    if own := owner and tags and tag_of(owner):
+    own = tag_of(owner) if owner and tags else None
+    if own:
         others = listing(tag[1] for tag in tags if tag)
         return f"unknown key of {own[0]} = {show(own[1])}; found in {own[0]} = {others}"
     hint = nearest(name, names)
