@@ -20,7 +20,7 @@ from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
 from dem_cli.statics import softer_joints
-from dem_cli.statics.agreement import doubts, load_range
+from dem_cli.statics.agreement import doubts, load_range, percent
 from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_bracket import OK, FailureLoad, SearchRange
@@ -108,8 +108,8 @@ def _missed(search: FailureLoad, peak: float, resolution: float) -> list[str]:
     low, high = search.carried, search.high
     if (1.0 - resolution) * low <= peak <= (1.0 + resolution) * high:
         return []
-    share, where = (100 * abs(peak / low - 1), "below") if peak < low else (100 * abs(peak / high - 1), "above")
+    share, where = (abs(peak / low - 1), "below") if peak < low else (abs(peak / high - 1), "above")
     return [
-        f"the curve peaks {share:.2g} % {where} the failure load, which was found by raising the load from gravity: "
+        f"the curve peaks {percent(share)} {where} the failure load, which was found by raising the load from gravity: "
         "only its shape counts"
     ]

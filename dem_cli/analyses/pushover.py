@@ -15,7 +15,7 @@ from dem_cli.errors import SolverError, UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
 from dem_cli.statics import post_peak, softer_joints
-from dem_cli.statics.agreement import doubts, histories, load_range, unique
+from dem_cli.statics.agreement import doubts, histories, load_range, percent, unique
 from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, SearchRange
@@ -185,7 +185,7 @@ def _changed(load: float, rigid: float, searched: bool, lowered: float) -> list[
         return []
     if not searched:
         return [f"the given kn moves the geometry before failure: on stiff joints it carries at most {rigid:.5g}"]
-    change = f"{'lowers' if load < rigid else 'raises'} the failure load by {100 * abs(load / rigid - 1):.2g} %"
+    change = f"{'lowers' if load < rigid else 'raises'} the failure load by {percent(abs(load / rigid - 1))}"
     return [f"the given kn {change}: on stiff joints it is {rigid:.5g}"]
 
 
@@ -196,12 +196,12 @@ def _off_the_load(peak: post_peak.CurvePeak, search: FailureLoad, scale: float, 
         return []
     load = peak.load * scale
     if load > (1.0 + off) * high:
-        above = f"{100 * (load / high - 1):.2g} % above the failure load"
+        above = f"{percent(load / high - 1)} above the failure load"
         if peak.hardens:
             return [f"the structure carries {above} after it has failed and moved: its curve peaks there"]
         why = f"so fast that its curve peaks {above}"
     elif load < (1.0 - off) * low:
-        below = f"{100 * (1 - load / low):.2g} % below the failure load"
+        below = f"{percent(1 - load / low)} below the failure load"
         why = f"on softer joints and with geometry that moves: its curve peaks {below}"
     else:
         return []

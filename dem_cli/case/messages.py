@@ -21,6 +21,7 @@ from dem_cli.case.wording import (
     literals,
     nearest,
     not_allowed,
+    show,
     unknown_name,
 )
 from dem_cli.errors import CaseProblem, KeyPath
@@ -30,7 +31,8 @@ from dem_cli.input_limits import MOST_MISTAKES
 class ErrorLocation(NamedTuple):
     """Location of a validation error.
 
-    kinds: what may stand there; owner: the table around; union, choices: path and members of the union above.
+    kinds: what may stand there; owner: the table around; union, choices: path and members of the union above;
+    kin: tables of other kinds or laws, of which a word in the case chose this one.
     """
 
     path: KeyPath
@@ -38,6 +40,7 @@ class ErrorLocation(NamedTuple):
     owner: type[BaseModel] | None
     union: KeyPath | None
     choices: tuple[DeclaredType, ...] = ()
+    kin: tuple[DeclaredType, ...] = ()
 
 
 def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str, Any]) -> list[CaseProblem]:
@@ -97,7 +100,7 @@ def describe(spot: ErrorLocation, item: Any, data: dict[str, Any]) -> CaseProble
     """One error of the validator as a problem."""
     path, kind = spot.path, item["type"]
     if kind == "extra_forbidden":
-        return CaseProblem(path, unknown_key(str(path[-1]), spot.owner), at_key=True)
+        return CaseProblem(path, unknown_key(str(path[-1]), spot.owner, spot.kin), at_key=True)
     if kind in ("value_error", "assertion_error"):
         cause = item["ctx"]["error"]
         keys = cause.keys if isinstance(cause, KeyProblem) else ()
@@ -131,13 +134,14 @@ def follow(model: type[BaseModel], loc: Sequence[str | int], error: str) -> Erro
     owner: type[BaseModel] | None = None
     union: KeyPath | None = None
     choices: tuple[DeclaredType, ...] = ()
+    kin: tuple[DeclaredType, ...] = ()
     for i, item in enumerate(loc):
         if len(kinds) == 1 and len(kinds[0].choices) > 1:
             members = kinds[0].choices
             tagged = tuple(member for member in members if has_tag(member.type, item))
             if not tagged:
                 union, choices = path, members
-            kinds = tagged or members
+            kinds, kin = tagged or members, members
             continue
         tables = [kind.type for kind in kinds if is_table(kind.type)]
         inner = tuple(part for kind in kinds for part in element(kind, item))
@@ -147,7 +151,7 @@ def follow(model: type[BaseModel], loc: Sequence[str | int], error: str) -> Erro
             kinds, owner = inner, tables[0] if tables else owner
     if len(kinds) == 1 and len(kinds[0].choices) > 1:
         choices, kinds = kinds[0].choices, kinds[0].choices
-    return ErrorLocation(path, kinds, owner, union, choices)
+    return ErrorLocation(path, kinds, owner, union, choices, kin)
 
 
 def element(kind: DeclaredType, item: str | int) -> tuple[DeclaredType, ...]:
@@ -171,9 +175,21 @@ def has_tag(declared: Any, tag: str | int) -> bool:
     return any(tag in get_args(fields[key].annotation) for key in ("kind", "law") if key in fields)
 
 
-def unknown_key(name: str, owner: type[BaseModel] | None) -> str:
-    """What to say about a key that the table does not have."""
+def tag_of(table: type[BaseModel]) -> tuple[str, str] | None:
+    """Key and word that choose a table among others of its kin, such as ("law", "fracture")."""
+    fields = table.model_fields
+    return next(((key, str(get_args(fields[key].annotation)[0])) for key in ("kind", "law") if key in fields), None)
+
+
+def unknown_key(name: str, owner: type[BaseModel] | None, kin: Sequence[DeclaredType] = ()) -> str:
+    """What to say about a key that the table does not have; kin: tables of other kinds or laws, which may have it."""
     names = list(owner.model_fields) if owner else []
+    tables = [member.type for member in kin if is_table(member.type)]
+    tags = [tag_of(table) for table in tables if name in table.model_fields] if owner in tables else []
+    own = tag_of(owner) if owner and tags else None
+    if own:
+        others = listing(tag[1] for tag in tags if tag)
+        return f"unknown key of {own[0]} = {show(own[1])}; found in {own[0]} = {others}"
     hint = nearest(name, names)
     return f"unknown key, {hint}" if hint else f"unknown key (allowed: {listing(names)})"
 

@@ -56,6 +56,10 @@ USUAL = {
     "tension": STRENGTH,
     "compression": STRENGTH,
     "jcs": STRENGTH,
+    # nylon to carbon fibre
+    "young": UsualRange(1e8, 1e12, "Pa", "a tie or bar", (1e9, 1e12), {"GPa": 1e9, "MPa": 1e6}),
+    "yield_stress": UsualRange(1e6, 1e10, "Pa", "a tie or bar", (2e7, 5e9), {"MPa": 1e6, "kPa": 1e3}),
+    "area": UsualRange(0.0, 0.5, "m2", "the section of a tie or bar", (1e-6, 0.1), {"mm2": 1e-6, "cm2": 1e-4}),
     # a barrel vault; the largest stone ever moved; many blocks of an arch or a wall
     "thickness": UsualRange(0.0, 50.0, "m", "the depth of a structure", (0.02, 5.0), LENGTHS),
     "block": UsualRange(0.0, 20.0, "m", "the size of a block, {root}", (0.02, 5.0), LENGTHS),
@@ -78,6 +82,7 @@ def doubts(case: Case) -> Iterator[CaseProblem]:
         if getattr(case, table):
             yield CaseProblem((table,), f"not used: kind = {show(case.analysis.kind)} has no time", at_key=True)
     yield from _live_doubts(case)
+    yield from _steel_doubts(case)
     yield from _bar_doubts(case)
     vary = getattr(case.analysis, "vary", None)
     if case.load and isinstance(vary, str) and vary.rpartition(".")[2] == "thickness":
@@ -107,6 +112,17 @@ def _joint_doubts(joint: CaseModel, path: KeyPath) -> Iterator[CaseProblem]:
         also = (f"friction = {show(value)}",) if tangent else ()
         if key in USUAL and value and (text := USUAL[key].doubt(value, *also)):
             yield CaseProblem((*path, key), text)
+
+
+def _steel_doubts(case: Case) -> Iterator[CaseProblem]:
+    """Moduli, yield stresses and sections of ties and bars in other units."""
+    tables: list[tuple[KeyPath, CaseModel]] = [(("tie", i), tie) for i, tie in enumerate(case.tie)]
+    tables += [(("bars", name), bar) for name, bar in case.bars.items()]
+    for path, table in tables:
+        for key in ("young", "yield_stress", "area"):
+            value = getattr(table, key, None)
+            if value and (text := USUAL[key].doubt(value)):
+                yield CaseProblem((*path, key), text)
 
 
 def _bar_doubts(case: Case) -> Iterator[CaseProblem]:

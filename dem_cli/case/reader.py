@@ -31,6 +31,7 @@ SYNTAX = {  # how messages of the parser begin -> the same in plain words
     "Unterminated string": "a string is not closed",
     "Unclosed array": "a list is not closed: ']' or ',' is missing",
     "Expected '=' after a key": "'=' is missing after a key",
+    "Expected newline or end of document": "more follows the value (numbers have no unit and a decimal point, 0.6)",
     "Invalid value": "a value is missing or not written as TOML (text stands in quotes)",
 }
 

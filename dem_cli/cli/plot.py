@@ -101,11 +101,11 @@ def command(
 
 def holds_sweep(folders: Sequence[Path]) -> bool:
     """Whether a sweep is to be drawn. Raises UsageError for a folder that is not there, or a sweep beside others."""
+    from dem_cli.output.folder import require_folder
     from dem_cli.post.sweep_table import is_sweep
 
     for folder in folders:
-        if not folder.is_dir():
-            raise UsageError(f"{folder}: no such folder")
+        require_folder(folder)
     sweeps = [folder for folder in folders if is_sweep(folder)]
     if sweeps and len(folders) > 1:
         raise UsageError(f"{sweeps[0]}: a sweep is drawn alone, not beside other folders")

@@ -25,12 +25,12 @@ def command(folder: Path, output: Path | None, show: bool) -> None:
     tables, the case.
     """
     from dem_cli.output.atomic_file import write_text
+    from dem_cli.output.folder import require_folder
     from dem_cli.output.reader import read_summary
     from dem_cli.post.sweep_table import is_sweep
     from dem_cli.report import run, sweep
 
-    if not folder.is_dir():
-        raise UsageError(f"{folder}: no such folder")
+    require_folder(folder)
     target = output or folder / PAGE_FILE
     if target.is_dir():
         raise UsageError(f"{target}: a folder; -o takes the name of a file")

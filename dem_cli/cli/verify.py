@@ -110,7 +110,7 @@ def known_as(case: Path) -> str:
 
 def nothing(without: int, slow: int, pattern: str, shelves: Sequence[str]) -> str:
     """Why there is nothing to do."""
-    why = [f"{without} have none"] if without else []
+    why = [f"{without} {'has' if without == 1 else 'have'} none"] if without else []
     why += [f"{slow} take longer"] if slow else []
     why += [f"none matches '{pattern}'"] if pattern and not why else []
     why += [f"on the shelf {' or '.join(shelves)}"] if shelves and not why else []

@@ -1,4 +1,4 @@
-"""Ending of a time history in words: collapsed, stood, still rocking or still moving; for answers, titles, reports."""
+"""Ending of a run in words: collapsed, stood, still moving, a load that was not found; for answers, titles, reports."""
 
 from __future__ import annotations
 
@@ -25,3 +25,12 @@ def ending_words(summary: Mapping[str, Any], digits: int = 4) -> str:
 def last_words(summary: Mapping[str, Any]) -> str:
     """What the last values of monitors are: those of a structure at rest, or passing."""
     return "in the end" if summary.get("at_rest", True) else "at the end, still moving"
+
+
+def unfound_load(summary: Mapping[str, Any]) -> str:
+    """What a search for the failure load that ended without one knows; empty where there is one, or no search."""
+    bracket = summary.get("failure_load_bracket")
+    if summary.get("status") != "not converged" or summary.get("failure_load") is not None or not bracket:
+        return ""
+    low = bracket[0]
+    return "no equilibrium was proven" if low is None else f"it stands at {low:.4g}"

@@ -99,6 +99,18 @@ def _own_summary(folder: Path) -> dict[str, object] | None:
     return summary if isinstance(summary, dict) and summary.keys() >= OWN_KEYS else None
 
 
+def require_folder(folder: Path) -> None:
+    """Raises UsageError where there is no folder of this name, with what makes one."""
+    if folder.is_dir():
+        return
+    if not folder.exists():
+        raise UsageError(f"{folder}: no such folder; `dem run CASE.toml` makes results/CASE")
+    if folder.suffix == ".toml":
+        made = f"`dem run {folder}` makes {Path('results') / folder.stem}"
+        raise UsageError(f"{folder}: a case, not a folder of results; {made}")
+    raise UsageError(f"{folder}: a file, not a folder of results; give the folder that it is in")
+
+
 def is_ours(folder: Path) -> bool:
     """Whether `folder` holds the results of a run, by its summary.json."""
     return _own_summary(folder) is not None

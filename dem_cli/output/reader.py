@@ -15,12 +15,13 @@ import numpy as np
 from dem_cli.errors import DamagedResults, UsageError
 from dem_cli.input_limits import SUMMARY_BYTES, UnreadableInput, read_bounded
 from dem_cli.model.model import Model
-from dem_cli.output.folder import SUMMARY
+from dem_cli.output.folder import SUMMARY, require_folder
 from dem_cli.output.integrity.stored_arrays import LaterArray, StoredArrays, check_size
 from dem_cli.output.layout import FRAMES, MODEL, NAMES, RESULTS_FORMAT, ROW_SCALARS, declared, units_of
 from dem_cli.output.record import STAGES, ContactRecord, Energy, Frame, JointPlaces, JointStates, LinkPlaces, LinkRecord
 from dem_cli.output.series import HistorySeries, read_series
 from dem_cli.output.store import FRAME_ARRAYS, FRAME_SCALARS, RESULTS
+from dem_cli.output.sweep_files import RUNS
 
 Stored: TypeAlias = "np.ndarray | LaterArray"  # an array in memory, or one that is read in parts
 
@@ -116,10 +117,11 @@ def read(folder: Path | str, *, lazy: bool = False) -> Results:
     lazy: frames are read when they are asked for, from a file that the caller closes by `Results.source`.
     """
     folder = Path(folder)
-    if not folder.is_dir():
-        raise UsageError(f"{folder}: no such folder")
+    require_folder(folder)
     if not (folder / RESULTS).is_file():
-        raise UsageError(f"{folder}: holds no results of dem run (no {RESULTS})")
+        runs = sorted(path.parent for path in folder.glob(f"{RUNS}/*/{RESULTS}"))
+        hint = f"; each run of this sweep has its own, such as {runs[0]}" if runs else ""
+        raise UsageError(f"{folder}: holds no results of dem run (no {RESULTS}){hint}")
     summary = read_summary(folder)
     try:
         with ExitStack() as stack:

@@ -9,7 +9,7 @@ import numpy as np
 
 from dem_cli.model.model import Model
 from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP, DOUBTFUL_REWEIGHTING, smallest_edge
-from dem_cli.output.ending import ending_words
+from dem_cli.output.ending import ending_words, unfound_load
 from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.paraview.vertices import size_in_words
 from dem_cli.output.reader import Results
@@ -68,7 +68,8 @@ def _load(summary: Mapping[str, Any]) -> tuple[str, str, str]:
         if loads:
             ends = f"{min(loads):.4g} … {max(loads):.4g}".replace("-", "−")
             return ("load multiplier", ends, "followed the load path without failure")
-        return _status(summary)
+        known = unfound_load(summary)
+        return ("failure load λ", "not found", known) if known else _status(summary)
     more = f"between {bracket[0]:.4f} and {bracket[1]:.4f}" if bracket and None not in bracket else ""
     mode = str(summary.get("failure_mode") or "").replace("mixed", "sliding and rocking")
     return ("failure load λ", f"{load:.4f}", ", ".join(filter(None, (more, mode and f"failure by {mode}"))))

@@ -108,12 +108,18 @@ def _alone_beyond_its_path(search: FailureLoad, resolution: float) -> bool:
     return search.carried > (1.0 + resolution) * path.load and not unique(search, resolution)
 
 
+def percent(share: float) -> str:
+    """A share in per cent of two digits, in full where it is large: "0.18 %", "107 %", not "1.1e+02 %"."""
+    value = 100.0 * share
+    return f"{value:.0f} %" if abs(value) >= 99.5 else f"{value:.2g} %"
+
+
 def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None) -> list[str]:
     """Words of warning where histories differ, or where the bracket is wider than asked for."""
     said = []
     if spread is not None:
-        share = 100.0 * (spread["highest"] - spread["lowest"]) / spread["highest"]
-        said.append(f"methods differ by {share:.2g} %, which may be the way of loading: {spread['why']}")
+        share = (spread["highest"] - spread["lowest"]) / spread["highest"]
+        said.append(f"methods differ by {percent(share)}, which may be the way of loading: {spread['why']}")
     if _alone_beyond_its_path(search, resolution):
         said.append(
             f"the path was not followed to its end: from there the load was raised in steps to {search.carried:.5g}, "
@@ -122,6 +128,6 @@ def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None
     if search.wide and search.width is not None:
         said.append(
             f"{_reached(search)} {search.carried:.5g}; not above {search.failed:.5g}: this bracket "
-            f"of {100.0 * search.width:.2g} % is wider than the {100.0 * resolution:.2g} % asked for"
+            f"of {percent(search.width)} is wider than the {percent(resolution)} asked for"
         )
     return said

@@ -182,7 +182,9 @@ def test_charts_of_a_time_history(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("nowhere",), "nowhere: no such folder"),
+        (("nowhere",), "nowhere: no such folder; `dem run CASE.toml` makes results/CASE"),
+        (("wall.toml",), "wall.toml: a case, not a folder of results; `dem run wall.toml` makes results/wall"),
+        (("wall/summary.json",), "wall/summary.json: a file, not a folder of results; give the folder that it is in"),
         (("empty",), "empty: holds no results of dem run or dem sweep"),
         (("wall", "-o", "empty"), "empty: a folder; -o takes the name of a file"),
         (("broken",), "broken: these results are damaged: sweep.csv: the column 'run' is missing"),
@@ -193,6 +195,7 @@ def test_mistakes(tmp_path, monkeypatch, arguments, message):
     (tmp_path / "empty").mkdir()
     (tmp_path / "broken").mkdir()
     (tmp_path / "broken" / "sweep.csv").write_text("a,b\n1,2\n", encoding="utf-8")
+    (tmp_path / "wall.toml").touch()
     wall(tmp_path / "wall")
     assert dem("report", *arguments) == (2, f"error: {message}\n")
 

@@ -130,6 +130,28 @@ def test_a_sweep_is_sorted_filtered_and_drawn(opened):
     assert page.run("return document.querySelector('#runs a').getAttribute('href')") == "runs/a0/summary.json"
 
 
+def test_runs_of_a_sweep_without_an_answer_are_drawn_as_in_the_picture(opened):
+    """They were left out: of what was not found the chart said nothing."""
+    page = opened("sweep")
+    page.run(
+        """const data = dem.runs.data, load = data.columns.indexOf("failure_load");
+        data.columns.push("failure_load_bracket.0", "failure_load_bracket.1");
+        const known = { a0: [0.25, 0.35], a2: [0.4, 0.9], a3: [0.2, null] };
+        for (const row of data.rows) row.push(...(known[row[0]] ?? [null, null]));
+        for (const row of data.rows) if (["a2", "a3"].includes(row[0])) row[load] = null;
+        dem.runs.show()"""
+    )
+    spans = page.run("return dem.runs.chart.spans.map((span) => [span.x, span.low, span.high, span.alone])")
+    assert sorted(spans) == [[0.3, 0.25, 0.35, False], [0.5, 0.2, None, True], [0.5, 0.4, 0.9, True]]
+    assert page.run("return document.querySelectorAll('#chart-sweep .span.alone').length") == 2
+    assert page.run("return dem.runs.chart.spec.missing") == [1.0]
+    assert page.run("return document.querySelectorAll('#chart-sweep circle:not(.pointer)').length") == 5
+    legend = page.run("return [...document.querySelectorAll('#chart-sweep .legend li')].map((one) => one.innerText)")
+    assert legend == ["running", "stack", "bracket, no answer", "no answer"]
+    assert page.run("return dem.runs.chart.range('y')[1]") > 0.9
+    assert page.complaints() == []
+
+
 def test_small_screens_and_the_dark(opened, browser):
     phone = {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": True}
     dark = {"features": [{"name": "prefers-color-scheme", "value": "dark"}]}

@@ -17,6 +17,7 @@ from dem_cli.output.reader import read
 from dem_cli.output.summary import exit_code
 from dem_cli.pipeline.batches import BatchOptions
 from dem_cli.pipeline.monitor_names import monitor_names
+from dem_cli.report import facts
 
 
 def run(tmp_path, solve, text=CASE, **options):
@@ -213,6 +214,17 @@ def test_answer_without_a_failure_load(tmp_path):
     text = console.answer(summary, tmp_path, ["summary.json"])
     assert "how sure" not in text
     assert "reached        loading, load 0.4000, displacement 10 µm" in text
+
+
+@pytest.mark.parametrize(
+    ("bracket", "known"), [([0.1, 0.9], "it stands at 0.1"), ([None, 0.9], "no equilibrium was proven")]
+)
+def test_a_load_that_was_not_found_is_the_answer(tmp_path, bracket, known):
+    """The answer began with "status: not converged", and of the load only a warning spoke."""
+    summary = {**wall_summary("not converged"), "failure_load": None, "failure_load_bracket": bracket}
+    assert f"failure load   not found: {known}\n" in console.answer(summary, tmp_path, [])
+    assert "0.9" not in console.answer({**summary, "limit_analysis": None}, tmp_path, [])
+    assert facts.answer(summary)[:3] == ("failure load λ", "not found", f"not converged; {known}")
 
 
 def test_compiling_is_said_at_once():

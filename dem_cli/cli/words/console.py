@@ -18,7 +18,7 @@ from dem_cli.cli.words.numbers import load_text, metres, seconds
 from dem_cli.cli.words.pace import Pace
 from dem_cli.cli.words.safety import safety_rows
 from dem_cli.cli.words.sureness import sureness_rows
-from dem_cli.output.ending import ending_words, last_words
+from dem_cli.output.ending import ending_words, last_words, unfound_load
 
 _FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
 _BAR_EVERY = 0.1  # s
@@ -147,6 +147,8 @@ def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
             else ""
         )
         rows.append(("failure load", f"{load_text(load)}{between}"))
+    elif known := unfound_load(summary):
+        rows.append(("failure load", f"not found: {known}"))
     settled = summary.get("settlement_at_collapse")
     if settled is not None:
         stands, falls = (100.0 * share for share in settled["bracket"])

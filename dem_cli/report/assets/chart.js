@@ -41,6 +41,7 @@ class Chart {
   constructor(figure, spec, pick) {
     Object.assign(this, { figure, spec, pick, at: null, zoom: null });
     this.lines = spec.lines.map((line) => ({ ...line, x: unpack(line.x), y: unpack(line.y) }));
+    this.spans = this.lines.flatMap((line) => (line.spans || []).map((span) => ({ ...span, line })));
     this.bands = (spec.bands || []).map((b) => ({ ...b, x: unpack(b.x), low: unpack(b.low), high: unpack(b.high) }));
     this.hidden = new Set();
     this.svg = element("svg", figure.querySelector(".plot"), { role: "img", "aria-label": this.says() });
@@ -84,6 +85,8 @@ class Chart {
     const many = this.lines.length > 1;
     for (const line of this.lines) one(line.name, line.colour, line.tints ? "shades" : line.bare ? "dot" : "stroke", many);
     for (const band of this.bands) one(band.name, band.colour, "area", false);
+    if (this.spans.some((span) => span.alone)) one("bracket, no answer", "7", "dash", false);
+    if ((this.spec.missing || []).length) one("no answer", "9", "cross", false);
     for (const level of this.spec.levels || []) one(level.name, level.colour, level.dash ? "dash" : "stroke", false);
     for (const vertical of this.spec.verticals || []) one(vertical.name, vertical.colour, "dash", false);
     for (const zoom of this.spec.zooms || []) {
@@ -121,6 +124,8 @@ class Chart {
       if (this.hidden.has(line.name)) continue;
       for (let i = 0; i < line.x.length; i++) if (inside(line.x[i])) take(line[axis][i]);
     }
+    for (const span of this.spans) if (!this.hidden.has(span.line.name)) (axis === "x" ? [span.x] : [span.low, span.high ?? NaN]).forEach(take);
+    if (axis === "x") (this.spec.missing || []).forEach(take);
     if (axis === "y") {
       for (const band of this.bands) { band.low.forEach(take); band.high.forEach(take); }
       for (const level of this.spec.levels || []) take(level.value);
@@ -153,6 +158,8 @@ class Chart {
     for (const level of this.spec.levels || []) this.level(inside, level, right);
     for (const vertical of this.spec.verticals || []) this.stroke(inside, vertical, this.px(vertical.value), ROOM.top, this.px(vertical.value), floor);
     for (const line of this.lines) if (!this.hidden.has(line.name)) this.line(inside, line);
+    for (const span of this.spans) if (!this.hidden.has(span.line.name)) this.span(inside, span);
+    for (const x of this.spec.missing || []) this.cross(svg, this.px(x), floor - 6);
     this.pointer = element("circle", svg, { class: "pointer", r: 4 });
     this.now = element("g", svg, { class: "now" });
     this.mark(this.at);
@@ -211,6 +218,20 @@ class Chart {
     const made = element("path", parent, { d: path, class: "line", "data-name": line.name });
     made.style.stroke = `var(--line-${line.colour})`;
     if (line.width) made.style.strokeWidth = line.width;
+  }
+
+  /** A bracket: a bar between its ends, dashed where it is all that is known; an arrow up where the upper end is not. */
+  span(parent, { x, low, high, alone, line }) {
+    const at = this.px(x), from = this.py(low), to = high === null ? from : this.py(high);
+    const top = high === null ? `M${at - 4} ${from}L${at} ${from - 7}L${at + 4} ${from}Z` : `M${at - 4} ${to}H${at + 4}`;
+    const stem = element("path", parent, { d: `M${at} ${from}V${to}`, class: alone ? "span alone" : "span", "stroke-dasharray": alone ? "2 2" : "none" });
+    const ends = element("path", parent, { d: `M${at - 4} ${from}H${at + 4}${top}`, class: "span" });
+    for (const made of [stem, ends]) made.style.stroke = `var(--line-${line.colour})`;
+  }
+
+  /** On the axis: a run of which nothing is known. */
+  cross(parent, x, y) {
+    element("path", parent, { d: `M${x - 4} ${y - 4}l8 8M${x - 4} ${y + 4}l8 -8`, class: "missing" });
   }
 
   /** Show where the view is: a point on the curve, or an instant. */

@@ -112,28 +112,39 @@ class Runs {
     figure.querySelector(".plot").replaceChildren();
     figure.querySelector("h3").textContent = x < 0 || y < 0 ? "" : `${this.data.columns[y]} over ${this.data.columns[x]}`;
     if (x < 0 || y < 0) return;
-    const rows = this.shown.filter((row) => typeof row[x] === "number" && typeof row[y] === "number");
+    const at = this.shown.filter((row) => typeof row[x] === "number");
+    const rows = at.filter((row) => typeof row[y] === "number" || this.bracket(row, y));
+    const missing = at.filter((row) => !rows.includes(row)).map((row) => row[x]);
     const names = [...new Set(rows.map((row) => this.family(row)))];
     const lines = names.length > MOST_LINES ? [this.cloud(rows, x, y)] : names.map((name, i) => this.line(rows, x, y, name, i));
-    this.chart = new Chart(figure, { id: "sweep", title: "Sweep", x: this.data.columns[x], y: this.data.columns[y], lines });
+    this.chart = new Chart(figure, { id: "sweep", title: "Sweep", x: this.data.columns[x], y: this.data.columns[y], lines, missing });
   }
 
-  points(rows, x, y) {
+  /** Between which values the answer of a run lies; high null where that end is not known, null where neither is. */
+  bracket(row, y) {
+    const [low, high] = [0, 1].map((end) => row[this.column(`${this.data.columns[y]}_bracket.${end}`)] ?? null);
+    return typeof low === "number" ? { low, high } : null;
+  }
+
+  /** Points of the runs that have an answer, and brackets of all that have one. */
+  points(all, x, y) {
+    const rows = all.filter((row) => typeof row[y] === "number");
+    const spans = all.filter((row) => this.bracket(row, y)).map((row) => ({ x: row[x], ...this.bracket(row, y), alone: typeof row[y] !== "number" }));
     const labels = rows.map((row) => `${this.family(row)}, run ${row[this.column("run")]}`);
-    return { x: rows.map((row) => row[x]), y: rows.map((row) => row[y]), labels, points: rows.length > 60 ? 2.5 : 4 };
+    return { x: rows.map((row) => row[x]), y: rows.map((row) => row[y]), labels, spans, points: rows.length > 60 ? 2.5 : 4 };
   }
 
   /** The runs of one family in the order of x, joined where there is one for each x. */
   line(rows, x, y, name, i) {
     const own = rows.filter((row) => this.family(row) === name).sort((a, b) => a[x] - b[x]);
-    const bare = new Set(own.map((row) => row[x])).size < own.length;
+    const bare = new Set(own.map((row) => row[x])).size < own.length; // several runs at one x: no line
     return { ...this.points(own, x, y), name, bare, colour: String(i % 10), width: 1.2 };
   }
 
   /** Too many families for lines: points, in shades of the value by which they differ. */
   cloud(rows, x, y) {
-    const [key, ...more] = this.families(), values = rows.map((row) => row[this.column(key)]), found = this.points(rows, x, y);
-    if (more.length || values.some((value) => typeof value !== "number")) return { ...found, name: "runs", bare: true, colour: "0" };
+    const [key, ...more] = this.families(), values = rows.filter((row) => typeof row[y] === "number").map((row) => row[this.column(key)]), found = this.points(rows, x, y);
+    if (more.length || !values.length || values.some((value) => typeof value !== "number")) return { ...found, name: "runs", bare: true, colour: "0" };
     const low = Math.min(...values), span = Math.max(...values) - low || 1;
     const tints = values.map((value) => `color-mix(in oklab, var(--line-1) ${(100 * (value - low)) / span}%, var(--line-0))`);
     return { ...found, name: `${short(key)} ${number(low)} to ${number(low + span)}`, bare: true, colour: "0", tints };

@@ -151,3 +151,35 @@ def test_digits_without_end(case_file):
 def test_overrides_without_end(value, case_file):
     with pytest.raises(CaseError, match=r"--set gravity: .* is not allowed; must be a number"):
         load_case(case_file(WALL), [f"gravity={value}"])
+
+
+@pytest.mark.parametrize(("text", "column"), [("density = 2300 kg", 16), ("friction = 0,6", 13)])
+def test_units_and_decimal_commas(text, column, case_file):
+    """The words of the parser, "expected newline or end of document", did not say what is wrong."""
+    words = rf"case.toml:1:{column}: not valid TOML: more follows the value \(numbers have no unit and a decimal point"
+    with pytest.raises(CaseError, match=words):
+        load_case(case_file(f"{text}\n{WALL}"))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("friction =", "cohesion = 1e5\nfriction =", "cohesion: unknown key of law = 'coulomb'; found in law = 'mohr-"),
+        ("courses =", "ring = 0.5\ncourses =", "ring: unknown key of kind = 'wall'; found in kind = 'arch'"),
+    ],
+)
+def test_a_key_of_another_law_or_kind(old, new, message, case_file):
+    """Cohesion of a joint of friction alone was refused with a list of other keys, tension with another one's name."""
+    with pytest.raises(CaseError, match=message):
+        load_case(case_file(WALL.replace(old, new, 1)))
+
+
+def test_doubts_about_steel(case_file):
+    """A yield stress of 235 Pa, meant in MPa, made a tie of no strength, without a word."""
+    tie = "[[tie]]\nends = [[0.5, 0.25], [0.5, 1.25]]\narea = 300.0\nyoung = 210.0\nyield_stress = 235.0\n"
+    said = load_case(case_file(WALL + tie)).warnings
+    assert [text.partition("case.toml:")[2].partition(" is unusual")[0] for text in said] == [
+        "13:9: tie.0.young: 210 Pa", "14:16: tie.0.yield_stress: 235 Pa", "12:8: tie.0.area: 300 m2",
+    ]  # fmt: skip
+    usual = tie.replace("300.0", "3e-4").replace("210.0", "2.1e11").replace("235.0", "2.35e8")
+    assert not load_case(case_file(WALL + usual)).warnings

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from dem_cli.statics.agreement import CREEP, PATH, doubts, histories, load_range
+from dem_cli.statics.agreement import CREEP, PATH, doubts, histories, load_range, percent
 
 RESOLUTION = 0.002
 
@@ -56,3 +56,10 @@ def test_load_raised_beyond_an_unfinished_path_is_one_history_alone(path, finish
     raised = search(path, finished, slides=True)
     raised.start = {"kind": kind}
     assert any("no second history" in word for word in doubts(raised, RESOLUTION, None)) is said
+
+
+def test_shares_are_written_in_full():
+    """A bracket of 100 % was "1e+02 %"."""
+    assert [percent(share) for share in (0.00184, 0.02, 0.994, 0.996, 1.07, -3.0)] == [
+        "0.18 %", "2 %", "99 %", "100 %", "107 %", "-300 %",
+    ]  # fmt: skip
