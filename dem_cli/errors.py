@@ -21,6 +21,8 @@ from dataclasses import dataclass
 from dem_cli.version import install_command
 
 BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
+# what a terminal obeys instead of showing it, what turns the order of letters round, and what no file of text can hold
+CONTROLS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 KeyPath = tuple[str | int, ...]
 
 
@@ -128,6 +130,11 @@ def dotted(path: KeyPath) -> str:
     A name that is more than letters, digits, - and _ is quoted: materials."hard stone".density.
     """
     return ".".join(str(key) if BARE_KEY.fullmatch(str(key)) else json.dumps(key, ensure_ascii=False) for key in path)
+
+
+def printable(text: str) -> str:
+    """A text whose control characters are written out, such as \\x1b: a terminal shows them instead of obeying."""
+    return CONTROLS.sub(lambda found: repr(found[0])[1:-1], text)
 
 
 def plain(problem: CaseProblem) -> str:

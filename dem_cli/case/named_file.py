@@ -8,6 +8,7 @@ from pathlib import Path
 
 from pydantic import ValidationInfo
 
+from dem_cli.case.wording import show
 from dem_cli.input_limits import DRAWING_BYTES, UnreadableInput, read_bounded, what_else
 
 
@@ -28,10 +29,21 @@ def digest(file: str | Path) -> str:
         return ""
 
 
+def is_file(path: Path) -> bool:
+    """Whether there is such a file; False where its name is longer than any file's, or nobody lets us look."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False
+
+
 def missing_file(path: Path, what: str) -> str:
     """`no such file: /x/east.csv, did you mean 'east.csv'?`; what: what it should be, such as "a record"."""
-    if path.exists():
-        return f"{path} is {what_else(path)}; {what} is a file"
+    try:
+        if path.exists():
+            return f"{path} is {what_else(path)}; {what} is a file"
+    except OSError as error:
+        return f"{show(str(path))} cannot be opened ({error.strerror})"
     try:
         files = sorted(file.name for file in path.parent.iterdir() if file.is_file())
     except OSError:

@@ -11,7 +11,7 @@ from typing import Any
 import tomli
 
 from dem_cli.case.wording import show
-from dem_cli.errors import CaseProblem, KeyPath
+from dem_cli.errors import CONTROLS, CaseProblem, KeyPath
 from dem_cli.input_limits import DEEPEST, LARGEST
 
 BLANK = re.compile(r"(?:[ \t\n,]|#[^\n]*)*")  # between elements: space, lines, commas, comments
@@ -21,6 +21,7 @@ STRING = re.compile(
     r'''"""(?:[^\\]|\\.)*?"""+|\'\'\'.*?\'\'\'+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*\'''',
     re.DOTALL,
 )
+NAMES = (("id",), ("name",))  # keys of names
 SCALAR = re.compile(r"[^,\]}\n#]*")
 
 
@@ -51,7 +52,17 @@ def impossible_values(value: Any, path: KeyPath = ()) -> Iterator[CaseProblem]:
             yield CaseProblem(path, "nested too deeply: no key takes that")
             return
         for key, item in value.items() if isinstance(value, dict) else enumerate(value):
-            yield from impossible_values(item, (*path, key))
+            if isinstance(key, str) and _unprinted(key, name=True):
+                yield CaseProblem(path, f"the name {show(key)} is not allowed; names have no control characters")
+            else:
+                yield from impossible_values(item, (*path, key))
+    elif isinstance(value, str) and _unprinted(value, name=path[-1:] in NAMES):
+        yield CaseProblem(path, f"{show(value)} is not allowed; text has no control characters")
+
+
+def _unprinted(text: str, name: bool) -> bool:
+    """Whether a terminal would obey a part of a text instead of showing it; a name stands in one line as well."""
+    return CONTROLS.search(text) is not None or (name and "\n" in text)
 
 
 class KeyPositions:

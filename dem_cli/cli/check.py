@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from dem_cli.cli.options import STDIN, azimuth_option, case_argument, elevation_option, load, overrides_option, warn
-from dem_cli.errors import UsageError
+from dem_cli.errors import UsageError, printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -70,7 +70,7 @@ def command(
         name = Path("model.toml") if case == STDIN else Path(case)
         path = output or name.with_suffix(".png")
         draw(loaded.case, model, dict(found), path, Standpoint(None, azimuth, elevation))
-        click.echo(str(path))
+        click.echo(printable(str(path)))
     elif azimuth is not None or elevation is not None:
         raise UsageError("--azimuth and --elevation are for --plot")
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dem_cli.errors import DemError, OutputError
+from dem_cli.errors import DemError, OutputError, printable
 from dem_cli.interrupts import Interrupts, asked
 from dem_cli.late_modules import start_lightly
 from dem_cli.version import __version__
@@ -125,7 +125,7 @@ class LazyGroup(click.Group):
         except BrokenPipeError:
             code = quiet_pipe()
         except DemError as error:
-            click.echo("\n".join(f"error: {line}" for line in str(error).splitlines()), err=True)
+            click.echo("\n".join(f"error: {printable(line)}" for line in str(error).splitlines()), err=True)
             code = error.exit_code
         except Exception as error:
             if asked():

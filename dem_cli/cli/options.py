@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dem_cli.errors import UsageError
+from dem_cli.errors import UsageError, printable
 from dem_cli.input_limits import CASE_BYTES
 
 if TYPE_CHECKING:
@@ -90,4 +90,4 @@ def load(case: str, overrides: Sequence[str]) -> LoadedCase:
 def warn(loaded: LoadedCase) -> None:
     """Print on stderr what is doubtful about a case."""
     for warning in loaded.warnings:
-        click.echo(f"warning: {warning}", err=True)
+        click.echo(f"warning: {printable(warning)}", err=True)

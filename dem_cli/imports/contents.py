@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.errors import CONTROLS
 from dem_cli.input_limits import DRAWING_BYTES, MOST_BLOCKS, MOST_CORNERS, MOST_FACES, MOST_SHAPES, what_else
 
 UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
@@ -57,13 +58,16 @@ def check_file(path: Path) -> None:
 
 
 def check_shapes(bodies: Sequence[FileBody]) -> None:
-    """Raises FileProblem where there are more blocks, or more corners of an outline or a face, than can be."""
+    """Raises FileProblem: too many blocks, or corners of an outline or a face, or a name that cannot be shown."""
     if len(bodies) > MOST_BLOCKS:
         raise FileProblem(f"it holds {len(bodies):,} shapes; at most {MOST_BLOCKS:,} are read")
     faces = sum(len(body.faces) for body in bodies)
     if faces > MOST_FACES:
         raise FileProblem(f"it holds {faces:,} faces; at most {MOST_FACES:,} are read")
     for number, body in enumerate(bodies, 1):
+        for name in (body.name, body.layer, body.said):
+            if CONTROLS.search(name) or "\n" in name:
+                raise FileProblem(f"the name {name!a} has control characters, which no name may have")
         named = f"'{body.name}'" if body.name else body.said or f"shape {number}"
         check_corners(named, max(map(len, body.faces)) if body.faces else len(body.points))
 

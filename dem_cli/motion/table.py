@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Positive, Vector
-from dem_cli.case.named_file import absolute_path, missing_file
+from dem_cli.case.named_file import absolute_path, is_file, missing_file
 from dem_cli.input_limits import LONGEST, MOST_CYCLES
 from dem_cli.motion.units import SI_FACTORS
 from dem_cli.tables.spectrum import SpectrumTable
@@ -173,7 +173,7 @@ class RecordTable(MotionTable):
         if self.unit is not None and self.unit not in units:
             allowed = ", ".join(f"'{unit}'" for unit in units)
             raise KeyProblem(f"'{self.unit}' is not a unit of {self.quantity} (allowed: {allowed})", "unit")
-        if not Path(self.file).is_file():
+        if not is_file(Path(self.file)):
             raise KeyProblem(missing_file(Path(self.file), "a record"), "file")
         return self
 

@@ -14,7 +14,7 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from dem_cli.arithmetic.products import norm
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive, StructureBase
-from dem_cli.case.named_file import absolute_path, missing_file
+from dem_cli.case.named_file import absolute_path, is_file, missing_file
 from dem_cli.imports.contents import UNITS, Contents, FileBody, FileProblem, unit_of
 from dem_cli.imports.formats import FORMATS, format_of, read
 from dem_cli.model.blocks import Block
@@ -113,7 +113,7 @@ class Import(StructureBase):
         if found is None:
             suffix = Path(self.file).suffix or Path(self.file).name
             raise KeyProblem(f"'{suffix}' is not read; the file ends in one of {', '.join(FORMATS)}", "file")
-        if not Path(self.file).is_file():
+        if not is_file(Path(self.file)):
             raise KeyProblem(missing_file(Path(self.file), "a drawing or mesh"), "file")
         suffix = Path(self.file).suffix.lower()
         if not found.flat and (info.context or {}).get("dimension") == 2:

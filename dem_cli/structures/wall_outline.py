@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Pair, StructureBase
-from dem_cli.case.named_file import absolute_path, missing_file
+from dem_cli.case.named_file import absolute_path, is_file, missing_file
 from dem_cli.geometry import pockets, polygon
 from dem_cli.imports.contents import UNITS, Contents, FileBody, FileProblem, unit_of
 from dem_cli.imports.formats import FORMATS, format_of, read
@@ -229,7 +229,7 @@ def _check_file(path: Path) -> None:
     if found is None or not found.flat:
         message = f"'{path.suffix or path.name}' is not a drawing; the file ends in one of {', '.join(DRAWN)}"
         raise KeyProblem(message, "file")
-    if not path.is_file():
+    if not is_file(path):
         raise KeyProblem(missing_file(path, "a drawing"), "file")
 
 

@@ -48,6 +48,7 @@ FILES = {
     "itself.svg": SVG.format('<g id="a"><rect width="1" height="1"/><use x:href="#a"/></g>'),
     "repeated.svg": repeated(8),
     "face.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf " + "1 2 3 " * MOST_CORNERS + "\n",
+    "bell.obj": cube(0).replace("o b0", "o a\a"),
     "cubes.obj": "".join(map(cube, range(MOST_TOGETHER + 1))),
 }
 REFUSED = {
@@ -78,6 +79,14 @@ REFUSED = {
         "id = 'w'\naxis = [[0.0, 0.0], [4.0, 0.0]]\ngable = { height = 1e18 }",
         "gable.height: 5e+18 blocks are too many",
     ),
+    "a name that no file has": (f'{RECORD}"{"a" * 300}.csv"', "aa... cannot be opened (File name too long)"),
+    "a drawing that no file is": (f'{JOINT}{IMPORT}"{"a" * 300}.svg"', "aa... cannot be opened (File name too long)"),
+    "a title that turns the terminal red": (f'title = "\\u001b[31m"\n{COLUMN}', r"title: '\x1b[31m' is not allowed"),
+    "a title that hides": (f'title = "\\u202e"\n{COLUMN}', r"title: '\u202e' is not allowed"),
+    "a file with NUL in its name": (f'{JOINT}{IMPORT}"a\\u0000.svg"', r"file: 'a\x00.svg' is not allowed"),
+    "a name of two lines": (f'{COLUMN}id = "a\\nerror: b"\n', r"id: 'a\nerror: b' is not allowed"),
+    "a table of two lines": (f'{COLUMN}[joints."a\\nb"]\nfriction = 0.5\n', r"joints: the name 'a\nb' is not allowed"),
+    "a block that rings": (f'{SPACE}{IMPORT}"bell.obj"', r"the name 'a\x07' has control characters"),
     "frames": (f"{COLUMN}[output]\nframes = 1000000000", "output.frames: 1000000000 is not allowed"),
     "mistakes": (COLUMN + "".join(f"x{k} = 1\n" for k in range(600)), "and 100 more mistakes"),
     "a mass": (COLUMN.replace("2000.0", "5e-324"), "has a mass of"),
@@ -162,3 +171,10 @@ def test_every_limit_is_on_the_page():
     told = {limit.most for limits in LIMITS.values() for limit in limits}
     constants = {name: value for name, value in vars(input_limits).items() if name.isupper()}
     assert {name for name, value in constants.items() if value not in told and not name.startswith("_")} == set()
+
+
+def test_a_terminal_obeys_nothing_that_others_wrote(tmp_path):
+    """Names of files reach messages too; those that are no text at all are written out."""
+    for name, shown in (("a\x1b[31m.toml", r"a\x1b[31m.toml"), ("a\udcff.toml", r"a\udcff.toml")):
+        done = CliRunner().invoke(main, ["check", str(tmp_path / name)])
+        assert (done.exit_code, shown in done.output) == (2, True), done.output

@@ -18,6 +18,7 @@ from dem_cli.cli.words.numbers import load_text, metres, seconds
 from dem_cli.cli.words.pace import Pace
 from dem_cli.cli.words.safety import safety_rows
 from dem_cli.cli.words.sureness import sureness_rows
+from dem_cli.errors import printable
 from dem_cli.output.ending import ending_words, last_words, unfound_load
 
 _FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
@@ -227,10 +228,10 @@ def limit_answer(summary: Mapping[str, Any], folder: Path | None = None) -> str:
 
 def show(lines: str) -> None:
     """Print the answer, on stdout."""
-    print(lines, flush=True)
+    print(printable(lines), flush=True)
 
 
 def note(line: str, quiet: bool = False) -> None:
     """Print a remark, on stderr."""
     if not quiet:
-        print(line, file=sys.stderr, flush=True)
+        print(printable(line), file=sys.stderr, flush=True)
