@@ -43,6 +43,7 @@ class DrawnJoints:
         self.blocks = [self.faces.blocks[self.owners, i] for i in (0, 1)]  # of each place
         self.arms = [on[i] - model.centroids[self.blocks[i]] for i in (0, 1)]
         self.apart = on[1] - on[0]
+        self.drawn = np.maximum((self.apart * self.faces.normals[self.owners]).sum(axis=1), 0.0)  # open as drawn [m]
         self.places = joint_places(self.faces)
 
     def at(self, positions: np.ndarray, orientations: np.ndarray, contacts: ContactRecord) -> JointInstant:
@@ -60,7 +61,7 @@ class DrawnJoints:
         pressure, shear, offset, state = self._forces(contacts, ends, normals, tangents)
         states = JointStates(
             opening=self._means(gaps),
-            crack_width=np.maximum(np.maximum.reduceat(gaps, faces.starts[:-1]) if n else gaps, 0.0),
+            crack_width=np.maximum(np.maximum.reduceat(gaps - self.drawn, faces.starts[:-1]) if n else gaps, 0.0),
             slip=_measured(slides),
             normal_stress=pressure / faces.areas,
             shear_stress=shear / faces.areas,

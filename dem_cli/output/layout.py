@@ -283,8 +283,8 @@ JOINT_STATES = {
         Described("mean distance across the joint, positive open", "m", _STATE),
     ),
     "crack_width": Described(
-        "distance of its wider end across the joint; 0 where none is open", "m", _STATE, (),
-        Described("distance of its widest corner across the joint; 0 where none is open", "m", _STATE),
+        "how far its wider end has opened since it was drawn; 0 where none has", "m", _STATE, (),
+        Described("how far its widest corner has opened since it was drawn; 0 where none has", "m", _STATE),
     ),
     "slip": Described(
         "how far the middle of b has slid on a along the tangent, the normal turned by +90°", "m", _STATE, (),

@@ -77,6 +77,22 @@ def test_what_turns_with_the_first_block_is_no_motion(pair):
     assert states.state.tolist() == [SLIDING]
 
 
+def test_a_gap_that_was_drawn_is_no_crack():
+    """A block over a base whose top falls off by 1 in 50: drawn open at one end, and no wider until it has moved."""
+    slope = 0.02 * B
+    base = [[-1.0, -0.5], [B, -0.5], [B, -slope], [0.0, 0.0], [-1.0, 0.0]]
+    model = scene(tables(block("base", base, fixed=True), block("above", rectangle(0.0, 0.0, B, H)))).model
+    drawn = DrawnJoints(model)
+    sides = (drawn.places.normals[:, 0] > 0.0).nonzero()[0]
+    assert len(sides) == 1  # the sloping face, seen by the block above
+    positions, angles = at_rest(model)
+    now = drawn.at(positions, angles, no_contacts())
+    np.testing.assert_allclose(now.gaps[sides].max(), slope, rtol=1e-3)
+    np.testing.assert_allclose(now.states.crack_width, 0.0, atol=1e-15)
+    positions[1] += (0.0, 0.003)
+    np.testing.assert_allclose(drawn.at(positions, angles, no_contacts()).states.crack_width[sides], 0.003, rtol=1e-3)
+
+
 def test_far_apart_it_is_the_same_joint(pair):
     positions, angles = at_rest(pair)
     positions[1] += (0.0, 5.0)
