@@ -134,7 +134,7 @@ class JointStates(NamedTuple):
 
     # In the plane slip, shear stress and eccentricity are along the normal turned by +90°; in space they are lengths.
     opening: np.ndarray  # mean distance across it, positive open [m]
-    crack_width: np.ndarray  # by how much its wider end, or its widest corner, is more open than as drawn; 0: by none [m]
+    crack_width: np.ndarray  # what its wider end, or its widest corner, has opened since it was drawn; or 0 [m]
     slip: np.ndarray  # of the middle of b on a [m]
     normal_stress: np.ndarray  # normal force over area, compression positive [Pa]
     shear_stress: np.ndarray  # on b [Pa]

@@ -54,6 +54,8 @@ def _tell_who_listens() -> None:
 
         def on_end(self, event: Any) -> None:
             """A kernel, or something inside of it."""
+            if not UNDER_WAY:  # it began before anybody listened
+                return
             UNDER_WAY.pop()
             if not UNDER_WAY:
                 if self._collecting:

@@ -7,7 +7,14 @@ import pytest
 
 from dem_cli.engine.clock import Clock
 from dem_cli.kernels.compilation.compile_time import Compilation
+from dem_cli.kernels.compilation.numba_setup import set_up_numba
 from dem_cli.output.record import Observer
+
+
+@pytest.fixture(autouse=True, scope="module")
+def numba_tells():
+    """As it does once a kernel of dem is compiled."""
+    set_up_numba()
 
 
 class Said(Observer):
