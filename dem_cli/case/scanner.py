@@ -21,7 +21,7 @@ STRING = re.compile(
     r'''"""(?:[^\\]|\\.)*?"""+|\'\'\'.*?\'\'\'+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*\'''',
     re.DOTALL,
 )
-NAMES = (("id",), ("name",))  # keys of names
+NAMES = (("id",),)  # keys of names that stand in one line
 SCALAR = re.compile(r"[^,\]}\n#]*")
 
 

@@ -113,10 +113,9 @@ def keep_compiled(function: Callable, of: Any, code: bytes, module: Any) -> None
     if hindrance or of_python or entry not in called:
         why = hindrance or (f"it calls {of_python[0]}" if of_python else "it has no entry")
         name = f"{function.__module__}.{function.__qualname__}"
-        of_package = name.partition(".")[0] == __name__.partition(".")[0]
-        SWITCH.remark(
-            f"numba is loaded in each process for {name}: {why}", fault=of_package and not why.startswith(_TAKES)
-        )
+        room = name.split(".")[:2]
+        fault = room[0] == __name__.partition(".")[0] and room[1:] != ["bench"] and not why.startswith(_TAKES)
+        SWITCH.remark(f"numba is loaded in each process for {name}: {why}", fault)
         return
     undefined = _undefined(code)
     needed = sorted(name for name in undefined if name in called or not _OF_PYTHON.match(name))

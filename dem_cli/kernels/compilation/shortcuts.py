@@ -93,7 +93,9 @@ def take_shortcuts(compiler: type) -> None:
 
 
 def _put(owner: Any, name: str, shortcut: Any) -> None:
-    _before.append((owner, name, getattr(owner, name)))
+    before = getattr(owner, name)
+    _before.append((owner, name, before))
+    shortcut.__wrapped__ = before  # so that who asks for its signature gets that of numba
     setattr(owner, name, shortcut)
 
 

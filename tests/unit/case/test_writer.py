@@ -103,7 +103,7 @@ def case_tables(draw):
                 "structure": st.lists(wall, min_size=1, max_size=2),
             },
             optional={
-                "title": st.text(st.characters(exclude_categories=("Cs",)), max_size=20),
+                "title": st.text(st.characters(exclude_categories=("Cs", "Cc", "Cf")), max_size=20),
                 "gravity": positive,
                 "block": st.lists(block, max_size=2, unique_by=lambda table: table["id"]),
                 "load": st.lists(load, max_size=2),
