@@ -105,7 +105,7 @@ def _steps(case: Case, dimension: int, of_property: bool) -> tuple[int, int]:
 
 
 def _first(seconds: tuple[int, int]) -> str:
-    """What compiling adds."""
+    """CPU time of compiling, once, in words."""
     return (
         f"{seconds[0]} to {seconds[1]} s more, once: its loops are compiled and kept, for this kind of analysis, "
         "these joints and this version of dem"

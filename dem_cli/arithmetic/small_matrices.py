@@ -59,7 +59,7 @@ def solved_tridiagonal(diagonal: np.ndarray, beside: np.ndarray, right: np.ndarr
 
 
 def determinants(matrices: np.ndarray) -> np.ndarray:
-    """Of matrices (..., 2, 2) or (..., 3, 3), written out."""
+    """Determinants of matrices (..., 2, 2) or (..., 3, 3), written out."""
     if matrices.shape[-1] == 2:
         return matrices[..., 0, 0] * matrices[..., 1, 1] - matrices[..., 0, 1] * matrices[..., 1, 0]
     crossed = np.cross(matrices[..., 1, :], matrices[..., 2, :])

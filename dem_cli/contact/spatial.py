@@ -85,7 +85,7 @@ def left_out(model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarra
 
 
 def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float | np.ndarray) -> np.ndarray:
-    """Those that share an area, a corner or an edge within a face, or cross with two edges, (n,) bool.
+    """Pairs of faces that share an area, a corner or an edge within a face, or cross with two edges, (n,) bool.
 
     Blocks that meet edge to edge or corner to corner cannot carry force, to first order.
     reach: [m], one for all or (n,).

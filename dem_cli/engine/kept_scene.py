@@ -144,7 +144,7 @@ def _check_tiles(sim: Simulation, joints: FixedJoints) -> None:
 
 
 def _same(here: Any, kept: Any) -> None:
-    """Of records of arrays, the same whole numbers, and as many others."""
+    """Raises ValueError where records of arrays have not the whole numbers of the run, and as many others."""
     if isinstance(here, np.ndarray):
         whole = here.dtype.kind in "iu"
         _require(alike(here, kept) and not (whole and (here != kept).any()), "what stays the same")
