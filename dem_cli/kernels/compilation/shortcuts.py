@@ -93,9 +93,7 @@ def take_shortcuts(compiler: type) -> None:
 
 
 def _put(owner: Any, name: str, shortcut: Any) -> None:
-    before = getattr(owner, name)
-    _before.append((owner, name, before))
-    shortcut.__wrapped__ = before  # so that who asks for its signature gets that of numba
+    _before.append((owner, name, getattr(owner, name)))
     setattr(owner, name, shortcut)
 
 

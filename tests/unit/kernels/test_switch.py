@@ -67,6 +67,15 @@ def rename(module: str, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
                 monkeypatch.setattr(function, "__code__", code.replace(co_names=names))
 
 
+@pytest.fixture
+def numba_as_it_comes():
+    """Without what an earlier test may have put into it."""
+    shortcuts.leave_shortcuts()
+    yield
+    machine_code.take_own_way()
+
+
+@pytest.mark.usefixtures("numba_as_it_comes")
 @pytest.mark.parametrize(("module", "name"), NAMES, ids=[f"{module}:{name}" for module, name in NAMES])
 def test_each_name_that_is_gone_is_missed(module, name, monkeypatch):
     check_private_names()
