@@ -10,6 +10,7 @@ import numpy as np
 from dem_cli.contact.block_compliance import BlockCompliance
 from dem_cli.contact.layout import PointLayout
 from dem_cli.kernels.records import Contacts, FixedJoints, Joints, MovingJoints
+from dem_cli.model.copies import numbered_through, repeated
 from dem_cli.model.model import Model
 
 
@@ -49,6 +50,13 @@ class DrawnFaces(NamedTuple):
             self.blocks[order], self.normals[order], starts, self.on_first[places], self.on_second[places],
             self.shares[places], self.lengths[order], self.areas[order],
         )  # fmt: skip
+
+    def copies(self, count: int, n_blocks: int) -> DrawnFaces:
+        """Those of so many copies of a structure of n_blocks blocks; blocks and places are numbered through."""
+        starts = numbered_through(self.starts[:-1], self.starts[-1], count)
+        normals, *others = (repeated(values, count) for values in (self.normals, *self[3:]))
+        blocks = numbered_through(self.blocks, n_blocks, count)
+        return DrawnFaces(blocks, normals, np.append(starts, count * self.starts[-1]), *others)
 
 
 # Normal forces [N] of points by parameters of their joints, overlaps [m], negative: open, memory and kn

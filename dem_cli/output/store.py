@@ -21,7 +21,18 @@ from dem_cli.output.growing_dataset import GrowingGroup
 from dem_cli.output.hdf5_file import Hdf5File
 from dem_cli.output.layout import IN_SECONDS, JOINT_PLACES, JOINT_STATES, LINKS, ROW_SCALARS, declared
 from dem_cli.output.paraview.snapshot_files import BLOCKS, FollowedJoints, ParaViewFiles
-from dem_cli.output.record import STAGES, Energy, Frame, HistoryRow, LinkRecord, RunRow, Samples
+from dem_cli.output.record import (
+    FRAME_ARRAYS,
+    STAGES,
+    Energy,
+    Frame,
+    FrameStack,
+    HistoryRow,
+    LinkRecord,
+    RunRow,
+    Samples,
+    stacked,
+)
 from dem_cli.output.run_tables import TABLES, write_runs
 from dem_cli.output.series import SeriesWriter
 from dem_cli.output.skeleton import FRAMES_AT_ONCE, declare_model, fill_model, growing_parts, skeleton
@@ -29,7 +40,6 @@ from dem_cli.output.summary import write_summary
 
 RESULTS, CASE, HISTORY_TABLE = "results.h5", "case.toml", "history.csv"
 FRAME_SCALARS = ("step", "load", "displacement", "time")
-FRAME_ARRAYS = ("positions", "orientations", "velocities")
 _BUFFERED_ROWS = 4096
 _BUFFERED_SAMPLES = 1024
 _UNFLUSHED = 10_000_000  # contact points × steps, some tenths of a second of work
@@ -59,6 +69,7 @@ class ResultWriter:
         self.last_row: HistoryRow | None = None
         self.last_frame: Frame | None = None
         self.n_frames = 0
+        self._waiting: list[Frame] = []
         self._flushed_step = -_UNFLUSHED
         self._rows: list[HistoryRow] = []
         self._held = EquilibriumMonitors(self.monitors, self.quantities)
@@ -143,6 +154,7 @@ class ResultWriter:
         """Complete the files and write summary.json, last of all."""
 
         def finish() -> None:
+            self._store_frames()
             self._flush_rows()
             self._write_out()
             self._history.drop_unused()
@@ -168,6 +180,7 @@ class ResultWriter:
             raise write_error(error, self.name) from None
 
     def _flush(self) -> None:
+        self._store_frames()
         self._flush_rows()
         self._write_out()
         for file in self._files:
@@ -186,16 +199,7 @@ class ResultWriter:
             self._series.flush()
 
     def _frame(self, frame: Frame) -> None:
-        if self._vtk is None:
-            self._begin_frames(frame.links)
-            assert self._vtk is not None
-        self._store_frame(frame)
-        now = None
-        if self._joints is not None and self._joint_states is not None:
-            now = self._joints.at(frame.positions, frame.orientations, frame.contacts)
-            for name, values in now.states._asdict().items():
-                self._joint_states.append(name, values[np.newaxis])
-        self._vtk.add(float(frame.time if self.kind in IN_SECONDS else self.n_frames), frame, now)
+        self._waiting.append(frame)
         self.n_frames += 1
         self.last_frame = frame
         if self._awaited(frame):
@@ -206,6 +210,23 @@ class ResultWriter:
         """Whether a frame goes to disk at once: those of a time history may come faster than a disk is worth."""
         work = abs(frame.step - self._flushed_step) * (len(frame.contacts.joint) + _OF_A_STEP)
         return self.kind not in IN_SECONDS or work >= _UNFLUSHED
+
+    def _store_frames(self) -> None:
+        """All frames that wait, together."""
+        if not self._waiting:
+            return
+        if self._vtk is None:
+            self._begin_frames(self._waiting[0].links)
+            assert self._vtk is not None
+        stack, now = stacked(self._waiting), None
+        first, n = self.n_frames - len(self._waiting), len(self._waiting)
+        self._waiting.clear()
+        self._keep(stack)
+        if self._joints is not None and self._joint_states is not None:
+            now = self._joints.at(stack.positions, stack.orientations, stack.contacts)
+            for name, values in now.states._asdict().items():
+                self._joint_states.append(name, values.reshape(n, -1))
+        self._vtk.add(stack.numbers("time") if self.kind in IN_SECONDS else first + np.arange(float(n)), stack, now)
 
     def _begin_frames(self, links: LinkRecord | None) -> None:
         """The files for ParaView, and what does not change of joints and links."""
@@ -228,21 +249,28 @@ class ResultWriter:
         self._vtk = ParaViewFiles(self.model, self._joints, self._open, links and links.places)
         self.dem.parent["VTKHDF"] = h5py.ExternalLink(BLOCKS, "/VTKHDF")
 
-    def _store_frame(self, frame: Frame) -> None:
-        frames, contacts = self._frames, self._contacts
-        for name, values in frame.contacts.stored().items():
+    def _keep(self, stack: FrameStack) -> None:
+        """In results.h5."""
+        frames, contacts, n = self._frames, self._contacts, len(stack.frames)
+        for name, values in stack.own_contacts().stored().items():
             contacts.append(name, values)
         for name in FRAME_ARRAYS:
-            frames.append(name, getattr(frame, name)[np.newaxis])
-        if frame.stresses is not None:
-            frames.append("stresses", frame.stresses[np.newaxis])
-        if self._links is not None and frame.links is not None:
-            self._links.append("forces", frame.links.forces[np.newaxis])
-        frames.append_one("step", frame.step)
+            frames.append(name, _by_frame(getattr(stack, name), n))
+        if stack.stresses is not None:
+            frames.append("stresses", _by_frame(stack.stresses, n))
+        if self._links is not None:
+            forces = [frame.links.forces for frame in stack.frames if frame.links is not None]
+            self._links.append("forces", np.array(forces))
+        frames.append("step", stack.numbers("step", np.int64))
         for name in FRAME_SCALARS[1:]:
-            frames.append_one(name, getattr(frame, name), np.float64)
-        frames.append_one("stage", STAGES.index(frame.stage), np.int8)
-        frames.append_one("n_contacts", len(frame.contacts.joint))  # last: it counts
+            frames.append(name, stack.numbers(name))
+        frames.append("stage", stack.numbers("stage", np.int8))
+        frames.append("n_contacts", stack.n_points)  # last: it counts
+
+
+def _by_frame(rows: np.ndarray, n_frames: int) -> np.ndarray:
+    """Rows of blocks, frame by frame, (n_frames, n_blocks, ...)."""
+    return rows.reshape(n_frames, -1, *rows.shape[1:])
 
 
 def _links_of(model: Model) -> list[tuple[str, Any]]:
