@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple, Protocol, Self
 
 import numpy as np
@@ -140,7 +140,10 @@ class JointProperties(NamedTuple):
 
 
 class JointGeometry(Protocol):
-    """What a narrow phase knows of the joints, one record for each dimension (kernels/records.py)."""
+    """What a narrow phase knows of the joints, one record of arrays for each dimension (kernels/records.py)."""
+
+    def __iter__(self) -> Iterator[np.ndarray]:
+        """All of them."""
 
     @property
     def keys(self) -> np.ndarray:

@@ -19,7 +19,7 @@ from dem_cli.engine.placement.clearances import play_of_start
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
 from dem_cli.engine.threads.crew import called_by_all, threads_wanted
-from dem_cli.engine.tracking import JointTracking
+from dem_cli.engine.tracking import Gauge, JointTracking
 from dem_cli.geometry.rotation import rotation_vectors
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
@@ -43,7 +43,7 @@ class Simulation:
 
     LASTING = frozenset((
         "settings", "model", "law", "properties", "kinematics", "shape", "following", "stages", "threads", "_scene",
-        "_loop", "_masses", "_stiff",
+        "_loop", "_masses", "_stiff", "_gauge",
     ))  # fmt: skip
 
     def __init__(
@@ -63,6 +63,7 @@ class Simulation:
         self.time = 0.0
         self._scene: tuple[Any, ...] = (None,)  # what the compiled loop is bound to
         self._loop: Callable[..., int] | None = None
+        self._gauge: Gauge | None = None  # of the present joints
         self._stiff: tuple[Any, ...] = (None,)  # joints, and the stiffness of their points
         self._masses: dict[float, np.ndarray] = {}  # inverse ones of joints that stay as they are, by their safety
         self.live_scale, self.tilting, self.safety = live_scale, tilting, relaxation.creep_safety
@@ -148,7 +149,9 @@ class Simulation:
 
     def measured(self) -> Contacts:
         """Contacts with the gaps of this instant; frames, levers and points of the joints follow, nothing else."""
-        return self.tracking.measured(self.bodies)
+        if self._gauge is None or not self._gauge.fits(self.tracking):
+            self._gauge = Gauge(self.tracking)
+        return self._gauge.measured(self.tracking, self.bodies)
 
     def _take_joints(self) -> None:
         """What follows from other joints: tiles, masses, and how long a compiled call may be."""
@@ -247,7 +250,7 @@ class Simulation:
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy takes along: not the compiled code that this one is bound to."""
-        return self.__dict__ | {"_scene": (None,), "_loop": None, "_stiff": (None,)}
+        return self.__dict__ | {"_scene": (None,), "_loop": None, "_stiff": (None,), "_gauge": None}
 
     def guard_of_kept(self) -> Callable[[Any], None]:
         """What looks at the state of a checkpoint that came back to it (engine/kept_scene.py)."""

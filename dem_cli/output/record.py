@@ -199,14 +199,17 @@ class FrameStack(NamedTuple):
 def stacked(frames: Sequence[Frame]) -> FrameStack:
     """Frames of one structure, at least one, as a stack."""
     n_blocks = len(frames[0].positions)
-    places = (np.concatenate([getattr(frame, name) for frame in frames]) for name in FRAME_ARRAYS)
+    positions, orientations, velocities = (
+        np.concatenate([getattr(frame, name) for frame in frames]) for name in FRAME_ARRAYS
+    )
     records = [frame.contacts for frame in frames]
     contacts = ContactRecord(*map(np.concatenate, zip(*records, strict=True)))
     counts = [len(record.joint) for record in records]
     through = contacts.blocks + np.repeat(n_blocks * np.arange(len(frames)), counts)[:, np.newaxis]
     found = [frame.stresses for frame in frames if frame.stresses is not None]
     stresses = np.concatenate(found) if found else None
-    return FrameStack(tuple(frames), *places, contacts._replace(blocks=through), stresses)
+    contacts = contacts._replace(blocks=through)
+    return FrameStack(tuple(frames), positions, orientations, velocities, contacts, stresses)
 
 
 class Energy(NamedTuple):
