@@ -41,8 +41,8 @@ from dem_cli.output.summary import write_summary
 RESULTS, CASE, HISTORY_TABLE = "results.h5", "case.toml", "history.csv"
 FRAME_SCALARS = ("step", "load", "displacement", "time")
 _BUFFERED_ROWS = 4096
-_BUFFERED_SAMPLES = 1024
-_UNFLUSHED = 10_000_000  # contact points × steps, some tenths of a second of work
+_BUFFERED_SAMPLES = 16_384
+_UNFLUSHED = 30_000_000  # contact points × steps, a second or two of work
 _OF_A_STEP = 15  # contact points that a step counts as, beside its own
 _TEXT = h5py.string_dtype()
 JointsOf = Callable[[Model], FollowedJoints]
@@ -70,6 +70,7 @@ class ResultWriter:
         self.last_frame: Frame | None = None
         self.n_frames = 0
         self._waiting: list[Frame] = []
+        self._n_points = 2 * model.n_blocks  # contact points, as long as no frame has said it
         self._flushed_step = -_UNFLUSHED
         self._rows: list[HistoryRow] = []
         self._held = EquilibriumMonitors(self.monitors, self.quantities)
@@ -102,22 +103,23 @@ class ResultWriter:
     def frame(self, frame: Frame) -> None:
         """Keep a snapshot; everything up to it is on disk when this returns.
 
-        In a time history all of that waits until some tenths of a second of work have come together.
+        In a time history all of that waits until a second or two of work have come together.
         """
         self._guarded(lambda: self._frame(frame))
 
     def row(self, row: HistoryRow) -> None:
-        """Keep a row of the history; it goes to disk with the next frame."""
+        """Keep a row of the history; it goes to disk with the next frame, in a time history as frames do."""
         if len(row.monitors) != len(self.monitors):
             raise ValueError(f"{len(row.monitors)} monitor values for {len(self.monitors)} monitors")
         self._rows.append(row)
         self._held.row(row)
         self.last_row = row
-        if len(self._rows) >= _BUFFERED_ROWS:
+        if len(self._rows) >= _BUFFERED_ROWS or (len(self._rows) > 1 and self._worked(row.step)):
+            self._flushed_step = row.step
             self._guarded(self._flush)
 
     def samples(self, samples: Samples) -> None:
-        """Keep a stretch of a time history; it goes to disk with the next frame, or when many wait."""
+        """Keep a stretch of a time history; it goes to disk as frames do, or when many wait."""
         if self._series is None:
             self._series = SeriesWriter(
                 self.dem.create_group("series"), self.monitors, self.quantities, self.model.dimension
@@ -202,14 +204,18 @@ class ResultWriter:
         self._waiting.append(frame)
         self.n_frames += 1
         self.last_frame = frame
-        if self._awaited(frame):
+        self._n_points = len(frame.contacts.joint)
+        if self.kind not in IN_SECONDS or self._worked(frame.step):
             self._flushed_step = frame.step
             self._flush()
 
-    def _awaited(self, frame: Frame) -> bool:
-        """Whether a frame goes to disk at once: those of a time history may come faster than a disk is worth."""
-        work = abs(frame.step - self._flushed_step) * (len(frame.contacts.joint) + _OF_A_STEP)
-        return self.kind not in IN_SECONDS or work >= _UNFLUSHED
+    def _worked(self, step: int) -> bool:
+        """Whether a time history has worked for so long that what waits is worth a disk's time.
+
+        By steps and not by a clock: the same run leaves the same bytes.
+        """
+        work = abs(step - self._flushed_step) * (self._n_points + _OF_A_STEP)
+        return self.kind in IN_SECONDS and work >= _UNFLUSHED
 
     def _store_frames(self) -> None:
         """All frames that wait, together."""

@@ -11,7 +11,7 @@ from synthetic import history_rows, wall_frames, wall_model, wall_summary
 
 from dem_cli.errors import UsageError
 from dem_cli.output.reader import read
-from dem_cli.output.record import Energy, Frame
+from dem_cli.output.record import Energy, Frame, Samples
 from dem_cli.output.store import ResultWriter
 from dem_cli.output.summary import ordered, to_json
 
@@ -158,7 +158,7 @@ def test_summary_is_strict_json_in_a_fixed_order():
 
 
 @pytest.mark.parametrize(("kind", "steps", "on_disk"), [
-    ("pushover", 1, 3), ("time-history", 1, 1), ("time-history", 10_000_000, 3),
+    ("pushover", 1, 3), ("time-history", 1, 1), ("time-history", 30_000_000, 3),
 ])  # fmt: skip
 def test_frames_of_a_history_wait_for_each_other(tmp_path, kind, steps, on_disk):
     """Putting each on disk took a quarter of a short history; one that many steps lead to goes at once."""
@@ -171,3 +171,20 @@ def test_frames_of_a_history_wait_for_each_other(tmp_path, kind, steps, on_disk)
     writer.close(wall_summary())
     with h5py.File(tmp_path / "results.h5") as file:
         assert len(file["dem/frames/step"]) == 3
+
+
+def test_rows_and_samples_of_a_history_without_frames_reach_the_disk_with_the_work(tmp_path):
+    """What a kill leaves is of the last seconds, also where no frame is wanted and samples are few."""
+    writer = ResultWriter(tmp_path, wall_model(), "", {}, ["top"], "time-history")
+    rows = [row._replace(step=10_000 * k) for k, row in enumerate(history_rows(wall_frames(wall_model()))[:100])]
+    known = 0
+    for k, row in enumerate(rows):
+        writer.samples(Samples(np.array([0.1 * k]), np.zeros((1, 3, 2)), np.zeros((1, 1))))
+        writer.row(row)
+        with h5py.File(tmp_path / "results.h5") as file:
+            steps = len(file["dem/history/step"])
+            assert len(file["dem/series/time"]) == steps if steps else True
+        known = max(known, steps)
+        assert k - known < 60  # 600,000 steps of some contact points: two seconds
+    assert known > 50
+    writer.abandon()
