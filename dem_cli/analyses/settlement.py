@@ -57,7 +57,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
 
 
 def measured_at_end(sim: Simulation) -> dict[str, Any]:
-    """What is said of the structure as it is now."""
+    """State of the structure at this settlement, for the summary."""
     return {"largest_displacement": measures.largest_displacement(sim), "joint_state": joint_state(sim, END)}
 
 

@@ -195,7 +195,7 @@ def _unspanned(case: Case) -> Iterator[CaseProblem]:
 
 
 def _unsaid(case: Case) -> Iterator[CaseProblem]:
-    """What structures take for granted and might be otherwise."""
+    """Notes on assumptions of structures that might be otherwise."""
     for i, table in enumerate(case.structure):
         for key, message in unsaid(table):
             yield CaseProblem(("structure", i, key), message)

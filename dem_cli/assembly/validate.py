@@ -162,7 +162,7 @@ def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
 
 
 def warnings(model: Model) -> list[str]:
-    """What makes a run slow or inexact without being wrong."""
+    """Notes on geometry that makes a run slow or inexact without being wrong."""
     free = ~model.fixed
     if not free.any():
         return ["every block is fixed: nothing can move"]

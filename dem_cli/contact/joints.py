@@ -155,7 +155,7 @@ class JointGeometry(Protocol):
 
     @property
     def features(self) -> np.ndarray:
-        """What each point is within its joint, (n_points,)."""
+        """Feature of its joint that each contact point is, a number within the joint, (n_points,)."""
 
     def kept(self) -> Self:
         """The same with a copy of what changes."""

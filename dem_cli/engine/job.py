@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Outcome:
-    """What a solver returns; `summary` holds the keys of summary.json that are the solver's."""
+    """Outcome of an analysis; `summary` holds the keys of summary.json that are the solver's."""
 
     summary: dict[str, Any]
 

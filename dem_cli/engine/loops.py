@@ -31,7 +31,7 @@ from dem_cli.links.registry import LINKS
 
 
 class Drifts(NamedTuple):
-    """What moves blocks, with their corners."""
+    """Kernels that move blocks, with their corners."""
 
     in_pseudo_time: Callable
     in_time: Callable  # with real masses, in seconds

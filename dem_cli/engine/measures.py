@@ -159,7 +159,7 @@ def free_falls(sim: Simulation) -> np.ndarray:
 
 
 def energy_sums(sim: Simulation) -> EnergySums:
-    """What the loads gave since the start, and what friction and joints took [J]."""
+    """Work of the loads since the start, and energy that friction and joints took [J]."""
     given = float(sim.ledger[slot.EXTERNAL])
     return EnergySums(given, float(sim.ledger[slot.FRICTION]) + sim.elastic_energy())
 
@@ -219,7 +219,7 @@ def reweighting_shares(sim: Simulation) -> tuple[float, float]:
 
 
 def _taken(e: Energy) -> float:
-    """What is lost for good [J]."""
+    """Energy that friction and all kinds of damping took [J]."""
     return e.friction + e.damping + e.dashpots + e.mass_damping + e.maxwell
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class StaticRunResult(NamedTuple):
-    """What became of one value."""
+    """Outcome of a structure at one value of what is varied."""
 
     value: float
     stands: bool | None  # None: neither was proven

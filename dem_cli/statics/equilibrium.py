@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What happened at a constant load."""
+    """Verdict on a structure at a constant load: equilibrium, failure, or neither."""
 
     state: str  # "equilibrium" | "failure" | "unknown"
     unbalanced: float  # largest unbalanced force at the end, in weights of its own block

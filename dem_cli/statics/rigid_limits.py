@@ -153,7 +153,7 @@ class RigidLimits:
         return "path" in self.seconds
 
     def loads(self) -> LimitLoads | None:
-        """What was found so far, for `limit_analysis` of summary.json."""
+        """Bounds of limit analysis so far, for `limit_analysis` of summary.json."""
         if self._matrices is None or self.associated is None:
             return None
         from dem_cli.limit.analysis import LimitLoads

@@ -36,7 +36,7 @@ def sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def _of_load(summary: Mapping[str, Any]) -> list[str]:
-    """What the bracket says, and what other methods say beside it."""
+    """Width of the bracket of the failure load, and how other methods agree with it."""
     load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
     if not load or not bracket or None in bracket:
         return []
