@@ -96,11 +96,11 @@ def _pairs(model: Model) -> int:
     """
     import numpy as np
 
-    from dem_cli.contact.gaps import joint_reach
+    from dem_cli.contact.gaps import notice_reach
     from dem_cli.model.places import undeformed
 
     corners, starts = undeformed(model), model.part_starts[:-1]
-    low = np.minimum.reduceat(corners, starts, axis=0) - joint_reach(model)
+    low = np.minimum.reduceat(corners, starts, axis=0) - notice_reach(model)
     high = np.maximum.reduceat(corners, starts, axis=0)
     near = ((low[:, None] <= high) & (low <= high[:, None])).all(axis=2)
     return int(near.sum() - len(starts)) // 2
