@@ -150,3 +150,16 @@ def test_an_earthquake_is_made_without_the_heavy_parts_of_scipy(tmp_path):
     case.write_text(SHAKEN)
     done = subprocess.run([sys.executable, "-c", PREPARED, str(case)], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "LOADED []"
+
+
+def test_a_history_without_an_end_is_refused_as_a_run_refuses_it(tmp_path):
+    """It passed the check: "how long is not said"."""
+    case = tmp_path / "shaken.toml"
+    case.write_text(SHAKEN[: SHAKEN.index("[motion]")] + SHAKEN[SHAKEN.index("[analysis]") :])
+    said = []
+    for command in (["check", str(case)], ["run", str(case), "-o", str(tmp_path / "out")]):
+        done = CliRunner().invoke(main, command)
+        assert done.exit_code == 2
+        said.append(done.output)
+    assert said[0] == said[1]
+    assert "analysis.duration: missing; must be a number > 0" in said[0]
