@@ -265,8 +265,8 @@ def damping_of_start(case: Case, model: Model, settings: Settings = DEFAULT) -> 
     """The [damping] of a case for the joints that it starts with. Raises CaseError as `damping_of` does."""
     properties = joint_properties(case, model, settings.stiffness.dynamics)
     rest = bodies_at_rest(model, origin_of(model))
-    joints = joints_of_start(model, rest, properties, smallest_edge(model)).joints
-    return damping_of(case, model, joints, settings)
+    start = joints_of_start(model, rest, properties, smallest_edge(model))
+    return damping_of(case, model, start, settings)
 
 
 def shaken(
