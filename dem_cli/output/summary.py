@@ -23,6 +23,7 @@ ORDER = (
     "check",
     "turning_points",
     "loops",
+    "moved_far",
     "settlement_at_collapse",
     "vary",
     "safety_factor",

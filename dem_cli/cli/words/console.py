@@ -126,14 +126,23 @@ def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbo
 
 def answer_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Label and text of each line of an answer of any kind, without warnings."""
-    rows = [*_load_rows(summary), *_shaking_rows(summary), *fragility_rows(summary), *mode_rows(summary)]
-    rows += [*curve_rows(summary), *safety_rows(summary)]
+    rows = [*_standing_rows(summary), *_load_rows(summary), *_shaking_rows(summary), *fragility_rows(summary)]
+    rows += [*mode_rows(summary), *curve_rows(summary), *safety_rows(summary)]
     return [*rows, *sureness_rows(summary), *_cost_rows(summary)]
 
 
 def _controlled(turn: Mapping[str, Any]) -> float:
     """Displacement of a turning point: that of the monitor that is controlled, else of the live load [m]."""
     return float(turn["controlled"] if "of" in turn else turn.get("live_displacement", turn["displacement"]))
+
+
+def _standing_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """That a structure stands under its dead loads, and how far blocks moved until then, where that is far."""
+    if summary.get("kind") != "gravity" or summary["status"] != "ok":
+        return []
+    far = summary.get("moved_far")
+    moved = f"; block '{far['block']}' has moved by {metres(far['distance'])} until then" if far else ""
+    return [("result", f"stands{moved}")]
 
 
 def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -42,6 +42,13 @@ class FoundPeak(SummaryTable):
     unit: str
 
 
+class FoundMotion(SummaryTable):
+    """moved_far."""
+
+    block: str
+    distance: Number
+
+
 class FoundValue(SummaryTable):
     """monitors.NAME."""
 
@@ -345,6 +352,7 @@ class RunSummary(SummaryTable):
     reweighting: FoundReweighting | None = None
     largest_overlap: Maybe = None
     largest_displacement: Maybe = None
+    moved_far: FoundMotion | None = None
     unbalanced_force: Maybe = None
     warnings: list[str] | None = None
     skipped: list[str] | None = None
