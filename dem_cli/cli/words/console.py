@@ -126,9 +126,9 @@ def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbo
 
 def answer_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Label and text of each line of an answer of any kind, without warnings."""
-    rows = [*_standing_rows(summary), *_load_rows(summary), *_shaking_rows(summary), *fragility_rows(summary)]
-    rows += [*mode_rows(summary), *curve_rows(summary), *safety_rows(summary)]
-    return [*rows, *sureness_rows(summary), *_cost_rows(summary)]
+    rows = [*_load_rows(summary), *_shaking_rows(summary), *fragility_rows(summary), *mode_rows(summary)]
+    rows += [*curve_rows(summary), *safety_rows(summary)]
+    return [*_standing_rows(summary), *rows, *sureness_rows(summary), *_cost_rows(summary)]
 
 
 def _controlled(turn: Mapping[str, Any]) -> float:
