@@ -84,6 +84,8 @@ class RelaxationSettings:
 
     tolerance: float = 1e-5  # unbalanced force on any block of a claimed equilibrium, in its own weight
     gravity_tolerance: float = 1e-5  # the same under dead loads alone
+    live: float = 0.1  # of the live load on a light block, that its unbalanced force is measured by at least
+    carried: float = 1e-3  # the same of what its joints carry
     chunk: int = 100  # steps between two looks
     looks_at_rest: int = 2  # one after the other, at which forces balance: not only passed by
     most_steps: int = 40_000  # of the fast way to an equilibrium, before it is sought with combined damping
