@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from dem_cli.analyses import curve_answers
 from dem_cli.analyses.curve_tracing import CurveTracing
-from dem_cli.analyses.pushover import INTERRUPTED, answer, limit_analysis
+from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
+from dem_cli.analyses.pushover import INTERRUPTED, answer
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
@@ -61,9 +62,10 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
             found |= softer_joints.checked(job, sim, search, resolution)
         except KeyboardInterrupt:
             search.status = INTERRUPTED
-    if search.limits is not None and search.status != INTERRUPTED and case.analysis.limit:
-        found["limit_analysis"] = limit_analysis(job, search)
-    return job.outcome([sim], answer(search, sim, resolution) | found)
+    if search.status != INTERRUPTED:
+        found |= beside(job, search, sim, StartBound(job))
+    said = answer(search, sim, resolution) | found
+    return job.outcome([sim], said | {"status": status_beside(said["status"], found)})
 
 
 def _curve_and_peak(job: Job, track: Track, search: FailureLoad, found: dict[str, Any]) -> None:
