@@ -1,4 +1,4 @@
-"""Bound beside a failure load: the associated load of limit analysis, whatever the kinematics, control, stiffness and law.
+"""Bound beside a failure load: the associated load of limit analysis, for any kinematics, control, stiffness and law.
 
 Above that of the geometry of the start no forces inside the friction cones are in equilibrium. A structure may carry
 more after its blocks have moved: then the bound of the geometry that it rests in says so. Where this one lies below the
@@ -15,6 +15,7 @@ from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine import measures
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.errors import UsageError
+from dem_cli.output.record import ABOVE
 from dem_cli.statics.failure_bracket import OK
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from dem_cli.limit.analysis import LimitLoads
     from dem_cli.statics.failure_bracket import FailureLoad
 
-ABOVE = "above what this geometry can carry"  # status of a failure load that nothing explains
+WIDEST = 0.01  # of the smallest edge: gaps between blocks that have moved, over which faces still touch at most
 
 
 class Moved(NamedTuple):
@@ -63,9 +64,7 @@ class StartBound:
         try:
             if job.case.analysis.pattern == "tilt":
                 require_scalable(job.model, properties, law)
-            loads = limit_loads(
-                job.model, properties, law, associated_only=not self.asked, settings=job.settings.limit
-            )
+            loads = limit_loads(job.model, properties, law, associated_only=not self.asked, settings=job.settings.limit)
         except UsageError as error:
             self.why_not = str(error)
             if self.asked:
@@ -133,16 +132,20 @@ def _moved(job: Job, search: FailureLoad, sim: Simulation) -> Moved:
     sim.restore(search.standing)
     try:
         displacement = max(measures.largest_displacement(sim) - search.settled, 0.0)
-        return Moved(displacement, _bound_there(job, sim))
+        return Moved(displacement, _bound_there(job, sim, displacement))
     except UsageError:
         return Moved(displacement, None)
     finally:
         sim.restore(end)
 
 
-def _bound_there(job: Job, sim: Simulation) -> float | None:
+def _bound_there(job: Job, sim: Simulation, displacement: float) -> float | None:
     """The associated load of the blocks of a simulation where they are, on faces as drawn; with fixed geometry on the
-    joints of the start with the gaps that have closed since."""
+    joints of the start with the gaps that have closed since.
+
+    Blocks that have moved by `displacement` [m] touch with corners whose gaps are a part of that: faces touch up to the
+    smallest gap with which they carry the dead loads.
+    """
     from dem_cli.limit.analysis import envelope_of, limit_load, load_where_it_rests, structure_of
 
     settings, law = job.settings.limit, sim.law
@@ -153,4 +156,9 @@ def _bound_there(job: Job, sim: Simulation) -> float | None:
     dead, live = sim.present_loads()
     model = sim.model._replace(dead_loads=dead, live_loads=live)
     near = max(TOUCHING_GAP, 2.0 * measures.largest_overlap(sim) / sim.smallest)
-    return load_where_it_rests(model, sim.properties, law, sim.bodies, near, settings).upper
+    most = max(near, min(WIDEST, 10.0 * displacement / sim.smallest))
+    while True:
+        found = load_where_it_rests(model, sim.properties, law, sim.bodies, near, settings).upper
+        if found is not None or near >= most:
+            return found
+        near = min(10.0 * near, most)

@@ -11,8 +11,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.analyses import curve_answers
-from dem_cli.analyses.curve_tracing import CurveTracing
 from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
+from dem_cli.analyses.curve_tracing import CurveTracing
 from dem_cli.analyses.pushover import INTERRUPTED, answer
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state

@@ -16,7 +16,7 @@ from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
 from dem_cli.output.record import FALLS, Observer
 from dem_cli.statics import post_peak, softer_joints
-from dem_cli.statics.agreement import doubts, histories, load_range, percent, unique
+from dem_cli.statics.agreement import at_the_bound, doubts, histories, load_range, percent, unique
 from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, SearchRange
@@ -165,7 +165,7 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
     and these are its own.
     """
     search, resolution = load_search.answer, job.case.analysis.resolution
-    if not search.found or search.limits is None or unique(search, resolution) or search.limits.too_large:
+    if not search.found or search.limits is None or at_the_bound(search, resolution) or search.limits.too_large:
         return
     path = search.limits.path
     if path is None:
@@ -260,7 +260,7 @@ def answer(search: FailureLoad, sim: Simulation, resolution: float) -> dict[str,
         "failure_load_bracket": [search.low, search.high],
         "load_range": load_range(search, resolution),
         "histories": [history.summary() for history in histories(search)],
-        "unique": unique(search, resolution) if search.bound is not None else None,
+        "unique": unique(search) if search.bound is not None else None,
         "onset_of_displacements": search.onset,
         "kinematics": sim.kinematics,
         "start": search.start,

@@ -145,10 +145,27 @@ def _standing_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     return [("result", f"stands{moved}")]
 
 
+def explained(summary: Mapping[str, Any]) -> bool:
+    """Whether the failure load lies above its bound because blocks have moved before."""
+    return bool((summary.get("above_the_bound") or {}).get("explained"))
+
+
+def _moved_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """What comes before a failure load that only blocks can carry that have moved: the load of the first motion."""
+    if not explained(summary):
+        return []
+    above = summary["above_the_bound"]
+    onset = summary.get("onset_of_displacements")
+    first = above["bound"] if onset is None else min(onset, above["bound"])
+    moved = f"then blocks move, by {metres(above['displacement'])} until the failure load"
+    return [("first motion", f"{load_text(first)}; {moved}")]
+
+
 def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     rows = []
     if summary["status"] != "ok":
         rows.append(("status", str(summary["status"])))
+    rows += _moved_rows(summary)
     load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
     if load is not None:
         between = (
@@ -168,7 +185,7 @@ def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(("equilibrium at", f"{load_text(summary['equilibrium_load'])}{bound}"))
     if summary.get("failure_mode"):
         rows.append(("failure mode", str(summary["failure_mode"])))
-    if summary.get("onset_of_displacements") is not None:
+    if summary.get("onset_of_displacements") is not None and not explained(summary):
         rows.append(("first motion", f"{load_text(summary['onset_of_displacements'])}, more than joints deform"))
     turns = summary.get("turning_points")
     if turns:

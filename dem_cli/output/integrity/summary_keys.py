@@ -49,6 +49,15 @@ class FoundMotion(SummaryTable):
     distance: Number
 
 
+class FoundAbove(SummaryTable):
+    """above_the_bound."""
+
+    bound: Number
+    displacement: Number
+    bound_where_it_rests: Maybe
+    explained: bool
+
+
 class FoundValue(SummaryTable):
     """monitors.NAME."""
 
@@ -353,6 +362,8 @@ class RunSummary(SummaryTable):
     largest_overlap: Maybe = None
     largest_displacement: Maybe = None
     moved_far: FoundMotion | None = None
+    no_bound: str | None = None
+    above_the_bound: FoundAbove | None = None
     unbalanced_force: Maybe = None
     warnings: list[str] | None = None
     skipped: list[str] | None = None
