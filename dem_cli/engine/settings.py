@@ -27,6 +27,7 @@ from dem_cli.engine.static_settings import (
     ProofSettings,
     SafetySettings,
     SettlementSettings,
+    StabilitySettings,
     WarmStartSettings,
 )
 from dem_cli.frozen_records import dataclass
@@ -160,6 +161,7 @@ class Settings:
     relaxation: RelaxationSettings = field(default_factory=RelaxationSettings)
     relief: ReliefSettings = field(default_factory=ReliefSettings)
     proof: ProofSettings = field(default_factory=ProofSettings)
+    stability: StabilitySettings = field(default_factory=StabilitySettings)
     load_search: LoadSearchSettings = field(default_factory=LoadSearchSettings)
     warm_start: WarmStartSettings = field(default_factory=WarmStartSettings)
     post_peak: PostPeakSettings = field(default_factory=PostPeakSettings)
