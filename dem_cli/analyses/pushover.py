@@ -6,6 +6,7 @@ from math import ceil, inf, log2
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
+from dem_cli.dynamics.stability import buckles, standing
 from dem_cli.engine.automatic_stiffness import ratio_of
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
@@ -14,11 +15,10 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import FALLS, Observer
+from dem_cli.output.record import BUCKLED, FALLS, Observer
 from dem_cli.statics import post_peak, softer_joints
 from dem_cli.statics.agreement import at_the_bound, doubts, histories, load_range, percent, unique
 from dem_cli.statics.compliance import compliance
-from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, SearchRange
 from dem_cli.statics.failure_load import LoadSearch
 from dem_cli.statics.mechanism import describe, moved_blocks
@@ -26,11 +26,13 @@ from dem_cli.statics.rigid_limits import RigidLimits
 from dem_cli.statics.warm_start import GRAVITY, find_start
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from dem_cli.case.schema import Case
     from dem_cli.engine.track import Track
 
 INTERRUPTED = "interrupted"
-MOTION, IMPOSSIBLE = "motion", "limit analysis"  # what failure is proved by
+MOTION, IMPOSSIBLE, BUCKLING = "motion", "limit analysis", "buckling"  # what failure is proved by
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
@@ -63,7 +65,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
         else:
             job.skipped.append("collapse: analysis.follow = 0")
             found["displacement_at_failure"] = search.peak_displacement
-    elif search.status != FALLS:
+    elif search.status not in (FALLS, BUCKLED):
         track.frame("loading")
         found["joint_state"] = joint_state(sim, END)
     if search.status != INTERRUPTED:
@@ -102,19 +104,19 @@ def _search(job: Job, start: StartBound) -> tuple[FailureLoad, Simulation]:
         track = job.track(sim)
         moved = 0.0  # smallest edges
         try:
-            if settle(sim, track, job.budget).state == "equilibrium":
+            if (status := standing(sim, track, job.budget)) == OK:
                 search.limits = RigidLimits(job, sim)
                 moved = _expected_motion(job, sim, search.limits)
                 if not moved:
                     near, search.start = find_start(job, sim, search.limits)
                     wanted = SearchRange(analysis.resolution, analysis.max_load, analysis.step)
-                    load_search = LoadSearch(sim, wanted, job.budget, track, search)
+                    load_search = LoadSearch(sim, wanted, job.budget, track, search, buckling(job))
                     load_search.on_stiff_joints = rigid / sim.live_scale if rigid else inf
                     load_search.run(near)
                     _second_history(job, load_search)
                     moved = search.peak_displacement / sim.smallest if _may_move(job, sim) else 0.0
             else:
-                search.status = FALLS
+                search.status = status
         except SolverError as error:
             job.warnings.append(str(error))
             search.end_undecided(job.settings.load_search.widest)
@@ -131,6 +133,11 @@ def _search(job: Job, start: StartBound) -> tuple[FailureLoad, Simulation]:
         rigid, searched = (search.carried, True) if search.found else (_bound_of_the_start(search, start), False)
         job.warnings.clear()
         search, sim = FailureLoad(), job.simulation("large")
+
+
+def buckling(job: Job) -> Callable[[Simulation], bool]:
+    """Whether a state at rest buckles, for searches."""
+    return lambda sim: buckles(sim, job.budget) is not None
 
 
 def _bound_of_the_start(search: FailureLoad, start: StartBound) -> float | None:
@@ -272,7 +279,7 @@ def answer(search: FailureLoad, sim: Simulation, resolution: float) -> dict[str,
         answer["undecided_loads"] = search.undecided
     if search.failing is not None:
         answer["proof_of_failure"] = {
-            "by": IMPOSSIBLE if search.impossible else MOTION,
+            "by": IMPOSSIBLE if search.impossible else BUCKLING if search.failing.buckles else MOTION,
             "released_share_of_work": search.failing.released,
             "growth_when_time_doubles": None if search.impossible else search.failing.growth,
         }

@@ -16,13 +16,16 @@ from dem_cli.dynamics.frequencies import System, system, with_springs
 from dem_cli.engine.placement import moves
 from dem_cli.geometry.rotation import turned_further
 from dem_cli.kernels import records as slot
+from dem_cli.output.record import BUCKLED, FALLS
 from dem_cli.output.resume.stages import stage
+from dem_cli.statics.equilibrium import settle
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
     from dem_cli.engine.budget import Budget
     from dem_cli.engine.simulation import Simulation
+    from dem_cli.engine.track import Track
 
 
 def buckles(sim: Simulation, budget: Budget) -> int | None:
@@ -41,6 +44,13 @@ def buckles(sim: Simulation, budget: Budget) -> int | None:
         return int(np.abs(shape).max(axis=1).argmax()) if _goes_on(sim, shape, budget) else None
     finally:
         sim.restore(held)
+
+
+def standing(sim: Simulation, track: Track, budget: Budget) -> str:
+    """Dead loads, as `settle` puts them on; "ok", or the status of a structure that falls or buckles under them."""
+    if settle(sim, track, budget).state != "equilibrium":
+        return FALLS
+    return "ok" if buckles(sim, budget) is None else BUCKLED
 
 
 def _unstable_shape(sim: Simulation) -> np.ndarray | None:
@@ -91,7 +101,8 @@ def _of_following_loads(sim: Simulation, found: System) -> csr_array:
             spins[:, axis] = sign * turn
             turned = turned_further(sim.bodies.orientations, spins)
             now = (sim.following.change(turned, dead=dead) for dead in (True, False))
-            sides.append(sum(factor * change for factor, change in zip(factors, now, strict=True)))
+            of_dead, of_live = now
+            sides.append(factors[0] * of_dead + factors[1] * of_live)
         slope = (sides[0] - sides[1])[found.blocks] / (2.0 * turn)  # (n_free, d + r)
         for column in range(slope.shape[1]):
             rows.append(n_dof * np.arange(n_free) + column)

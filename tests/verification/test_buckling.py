@@ -1,4 +1,4 @@
-"""Buckling: a straight column on elastic joints stands below its load of buckling and not above, though forces balance."""
+"""Buckling: a straight column on elastic joints stands below its load of buckling, above it forces only balance."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SIDE, KN, DENSITY = 0.3, 1e9, 100.0
 
 
 def critical(n: int) -> float:
-    """Load on top that makes n blocks buckle: rigid links on springs kn b³/12, which lean under it and their weights [N]."""
+    """Load on top that makes n blocks buckle [N]: rigid links on springs kn b³/12, with their weights."""
     spring, weight = KN * SIDE**3 / 12.0, DENSITY * 9.81 * SIDE**2
     stiffness, levers = np.zeros((n, n)), SIDE * np.eye(n)
     for i in range(n):
@@ -29,13 +29,15 @@ def critical(n: int) -> float:
     return float(eigvalsh(stiffness - by_weight, levers)[0])
 
 
-def column(n: int, load: float, law: str = "coulomb", **analysis) -> dict:
+def column(n: int, load: float, law: str = "coulomb", load_kind: str = "dead", **analysis) -> dict:
     """Blocks of 0.3 m on each other, pressed in the middle of the top by a load that goes along with it."""
     strength = {"friction": 1.0} if law == "coulomb" else {"law": law}
     joint = strength | {"kn": KN, "ks": 100.0 * KN}
     base = block("base", rectangle(-1.0, -0.3, 1.3, 0.0), fixed=True)
     blocks = [block(f"b{i}", rectangle(0.0, SIDE * i, SIDE, SIDE * (i + 1))) for i in range(n)]
-    force = [{"block": f"b{n - 1}", "force": [0.0, -load], "at": [SIDE / 2, SIDE * n], "follows": "point"}]
+    force = [
+        {"block": f"b{n - 1}", "force": [0.0, -load], "at": [SIDE / 2, SIDE * n], "follows": "point", "kind": load_kind}
+    ]
     return tables(
         base, *blocks, density=DENSITY, joints={"j": joint}, load=force,
         analysis={"kind": "gravity", "kinematics": "large"} | analysis,
@@ -48,6 +50,28 @@ def test_a_straight_column_buckles_above_its_load(share, status, law):
     summary, _ = solve(column(6, share * critical(6), law))
     assert summary["status"] == status
     assert summary.get("buckling") == (None if status == "ok" else {"block": "b5"})
+
+
+@pytest.mark.parametrize("control", ["load", "displacement"])
+def test_a_load_that_makes_a_column_buckle_is_found(control):
+    """Nothing pushes it sideways: without the tangent the load rises for ever."""
+    exact = critical(3)
+    how = {"kind": "pushover", "pattern": "live", "max_load": 4.0, "resolution": 0.01}
+    how |= {"control": control, "follow": 3.0 * exact / (KN * SIDE)} if control == "displacement" else {}
+    summary, _ = solve(column(3, exact, load_kind="live", **how))
+    assert summary["status"] == "ok"
+    low, high = summary["failure_load_bracket"]
+    assert 0.97 < low <= high < 1.03
+    assert summary["proof_of_failure"]["by"] == "buckling"
+
+
+def test_a_path_of_loads_ends_where_it_buckles():
+    case = column(3, critical(3), load_kind="live") | {"analysis": {
+        "kind": "cycle", "pattern": "live", "path": [0.9, 1.1], "step": 0.3, "kinematics": "large",
+    }}  # fmt: skip
+    summary, _ = solve(case)
+    assert summary["status"] == "fails on the way"
+    assert summary["failure_load"] == pytest.approx(1.1)
 
 
 def test_what_was_looked_at_stays_as_it_was():
