@@ -10,8 +10,6 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from dem_cli.contact.joints import only_points
-from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine import measures
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.errors import UsageError
@@ -141,24 +139,14 @@ def _moved(job: Job, search: FailureLoad, sim: Simulation) -> Moved:
 
 def _bound_there(job: Job, sim: Simulation, displacement: float) -> float | None:
     """The associated load of the blocks of a simulation where they are, on faces as drawn; with fixed geometry on the
-    joints of the start with the gaps that have closed since.
-
-    Blocks that have moved by `displacement` [m] touch with corners whose gaps are a part of that: faces touch up to the
-    smallest gap with which they carry the dead loads.
+    joints of the start with the gaps that have closed since. displacement: how far they have moved [m].
     """
-    from dem_cli.limit.analysis import envelope_of, limit_load, load_where_it_rests, structure_of
+    from dem_cli.limit.analysis import load_of_points, load_where_it_rests
 
     settings, law = job.settings.limit, sim.law
     if sim.kinematics == "fixed":
-        joints = only_points(sim.joints, sim.measured().gaps <= 0.0)
-        structure = structure_of(sim.model, joints)
-        return limit_load(structure, envelope_of(joints, law), settings.associated).upper
+        return load_of_points(sim.model, sim.joints, sim.measured().gaps <= 0.0, law, settings).upper
     dead, live = sim.present_loads()
     model = sim.model._replace(dead_loads=dead, live_loads=live)
-    near = max(TOUCHING_GAP, 2.0 * measures.largest_overlap(sim) / sim.smallest)
-    most = max(near, min(WIDEST, 10.0 * displacement / sim.smallest))
-    while True:
-        found = load_where_it_rests(model, sim.properties, law, sim.bodies, near, settings).upper
-        if found is not None or near >= most:
-            return found
-        near = min(10.0 * near, most)
+    touch = 2.0 * measures.largest_overlap(sim), min(WIDEST * sim.smallest, 10.0 * displacement)
+    return load_where_it_rests(model, sim.properties, law, sim.bodies, touch, settings).upper

@@ -22,7 +22,7 @@ from dem_cli.model.model import Model
 from dem_cli.model.scales import largest_structure, smallest_edge
 
 if TYPE_CHECKING:
-    from dem_cli.kernels.records import Bodies
+    from dem_cli.kernels.records import Bodies, Joints
     from dem_cli.laws.envelope import Envelope
     from dem_cli.limit.least import LeastLoad
     from dem_cli.limit.path import Path
@@ -250,11 +250,33 @@ def start_structure(
 
 
 def load_where_it_rests(
-    model: Model, properties: JointProperties, law: Law, bodies: Bodies, near: float, settings: LimitSettings
+    model: Model,
+    properties: JointProperties,
+    law: Law,
+    bodies: Bodies,
+    touch: tuple[float, float],
+    settings: LimitSettings = DEFAULT_LIMIT,
 ) -> LimitLoad:
     """The associated load of blocks that have moved, on joints as drawn from where they are now.
 
-    model: with the loads that act there; bodies, near: as for `start_structure`. Raises UsageError as `limit_loads`.
+    model: with the loads that act there; bodies: as for `start_structure`; touch: gaps or overlaps of faces that touch
+    in any case, and at most [m]. Blocks that have turned touch with corners: faces touch up to the smallest gap with
+    which they carry the dead loads. Raises UsageError as `limit_loads`.
     """
-    structure = start_structure(model, properties, law, bodies, near)
-    return limit_load(structure, envelope_of(structure.joints, law, bonds=structure.bonds), settings.associated)
+    smallest = smallest_edge(model)
+    near, most = (max(TOUCHING_GAP, reach / smallest) for reach in touch)
+    while True:
+        structure = start_structure(model, properties, law, bodies, near)
+        strength = envelope_of(structure.joints, law, bonds=structure.bonds)
+        found = limit_load(structure, strength, settings.associated)
+        if found.upper is not None or near >= most:
+            return found
+        near = min(10.0 * near, most)
+
+
+def load_of_points(
+    model: Model, joints: Joints, closed: np.ndarray, law: Law, settings: LimitSettings = DEFAULT_LIMIT
+) -> LimitLoad:
+    """The associated load on some points of the joints of the start; closed: which ones carry, (n_points,) bool."""
+    among = only_points(joints, closed)
+    return limit_load(structure_of(model, among), envelope_of(among, law), settings.associated)
