@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from dem_cli.limit.analysis import LimitLoads
     from dem_cli.statics.failure_bracket import FailureLoad
 
-WIDEST = 0.01  # of the smallest edge: gaps between blocks that have moved, over which faces still touch at most
+WIDEST = 0.1  # of the smallest edge: gaps between blocks that have moved, over which faces still touch at most
 
 
 class Moved(NamedTuple):
