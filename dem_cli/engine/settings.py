@@ -27,6 +27,7 @@ from dem_cli.engine.static_settings import (
     ProofSettings,
     SafetySettings,
     SettlementSettings,
+    StabilitySettings,
     WarmStartSettings,
 )
 from dem_cli.frozen_records import dataclass
@@ -84,6 +85,8 @@ class RelaxationSettings:
 
     tolerance: float = 1e-5  # unbalanced force on any block of a claimed equilibrium, in its own weight
     gravity_tolerance: float = 1e-5  # the same under dead loads alone
+    live: float = 0.1  # of the live load on a light block, that its unbalanced force is measured by at least
+    carried: float = 1e-3  # the same of what its joints carry
     chunk: int = 100  # steps between two looks
     looks_at_rest: int = 2  # one after the other, at which forces balance: not only passed by
     most_steps: int = 40_000  # of the fast way to an equilibrium, before it is sought with combined damping
@@ -141,7 +144,6 @@ class DoubtSettings:
     overlap: float = DOUBTFUL_OVERLAP  # in smallest edges
     reweighted: float = DOUBTFUL_REWEIGHTING  # of the energy, that went or came as the areas of contact points changed
     off_the_load: float = 0.02  # of the failure load, that the curve of the collapse may peak above or below it
-    above: float = 0.005  # of the associated load, that a failure load may lie above it
     lowered: float = 0.005  # of the load on stiff joints, that soft ones may change it by
     beyond: float = 0.005  # of the value, that a structure may stand beyond what limit analysis proved impossible
     buckles: float = 0.3  # of its load, that leaning over "auto" joints costs a structure; it falls by itself at 0.8
@@ -158,6 +160,7 @@ class Settings:
     relaxation: RelaxationSettings = field(default_factory=RelaxationSettings)
     relief: ReliefSettings = field(default_factory=ReliefSettings)
     proof: ProofSettings = field(default_factory=ProofSettings)
+    stability: StabilitySettings = field(default_factory=StabilitySettings)
     load_search: LoadSearchSettings = field(default_factory=LoadSearchSettings)
     warm_start: WarmStartSettings = field(default_factory=WarmStartSettings)
     post_peak: PostPeakSettings = field(default_factory=PostPeakSettings)

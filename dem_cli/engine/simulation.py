@@ -13,7 +13,7 @@ from dem_cli.contact.joints import JointArrays, JointGeometry, JointProperties, 
 from dem_cli.contact.start import bodies_at_rest
 from dem_cli.engine.fictitious_masses import fictitious_masses
 from dem_cli.engine.kept_scene import guard_of
-from dem_cli.engine.loads import loads_of
+from dem_cli.engine.loads import ActingForces, loads_of
 from dem_cli.engine.loops import compiled_advance
 from dem_cli.engine.placement.clearances import play_of_start
 from dem_cli.engine.settings import DEFAULT, Settings
@@ -77,6 +77,7 @@ class Simulation:
         self.free = np.flatnonzero(~model.fixed)
         self.widths = model.shapes.widths
         self.loads = loads_of(model, live_scale, self.shape.radii, relaxation.narrowest_arm)
+        self.acting = ActingForces(self.loads, model.masses, self.free, d, relaxation.live, relaxation.carried)
         self.following = model.following if kinematics == "large" else None
         self.drawn_dead = self.loads.dead.copy()  # before any of it follows
         self.control = np.zeros(slot.N_CONTROL)
@@ -338,7 +339,11 @@ class Simulation:
 
     @property
     def unbalanced(self) -> float:
-        """Largest unbalanced force of a block in the last step, over its own weight."""
+        """Largest unbalanced force of a block in the last step, over its own weight, or where others than weights act
+        over what does (engine/loads.py)."""
+        live = float(self.control[slot.LIVE_FACTOR])
+        if self.acting.count(live):
+            return self.acting.largest_share(self.bodies, self.joints, self.contacts, live)
         return float(self.control[slot.UNBALANCED])
 
     def use(self, safety: float, damping: float | None = None, change: float = 0.0) -> None:

@@ -27,6 +27,19 @@ class ProofSettings:
 
 
 @dataclass(frozen=True)
+class StabilitySettings:
+    """Whether an equilibrium buckles: its tangent, and what blocks do that are moved a little along its shape."""
+
+    acting: float = 1e-9  # of the largest normal force: points with more carry, and count in the tangent
+    negative: float = 1e-10  # of the largest eigenvalue: what is below minus that is negative
+    turn: float = 1e-5  # rad: turn of blocks over which following loads are seen to change
+    pushed: float = 1e-5  # of the smallest edge: how far blocks are moved
+    goes_on: float = 20.0  # of that way, along the shape, where they move on
+    goes_back: float = 0.1  # and where they have come back
+    looks: int = 400  # at them
+
+
+@dataclass(frozen=True)
 class LoadSearchSettings:
     """The search of the failure load: probes, creep to an estimate, loads raised, failures tried again."""
 

@@ -44,6 +44,8 @@ MONITOR_UNITS = {  # by what is followed
 MONITOR_UNITS |= {f"absolute {name}": MONITOR_UNITS[name] for name in ("displacement", "velocity", "acceleration")}
 FALLS = "does not stand under its dead loads"  # status of a run of any kind, of limit analysis too
 FRAME_ARRAYS = ("positions", "orientations", "velocities")  # fields of Frame that each block has a row of
+BUCKLED = "buckled under its dead loads"  # the same where forces balance, and the tangent stiffness is negative
+ABOVE = "above what this geometry can carry"  # status of a failure load above its bound that nothing explains
 COLLAPSED, STOOD, ROCKS, MOVES = "collapsed", "stood", "still rocking", "still moving"  # ends of time histories
 
 

@@ -36,6 +36,7 @@ class Verdict:
     released: float = 0.0  # failure: share of the work of the loads that became motion or was damped
     growth: float = 0.0  # failure: growth of the displacement in the last doubling of time
     block: str | None = None  # failure: that came to rest elsewhere
+    buckles: bool = False  # failure: forces balance, and the least push makes it go on
 
 
 class Ahead(NamedTuple):

@@ -117,6 +117,7 @@ ALLOWED: dict[str, set[str] | None] = {
     "statics": {
         "contact.joints",
         "engine",
+        "geometry",
         "kernels.records",
         "laws.envelope",
         "limit",

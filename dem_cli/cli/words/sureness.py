@@ -32,6 +32,8 @@ def sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(("limit analysis", text))
         if wedged(limits):
             rows.append(("", f"associated: {WEDGED}"))
+    if summary.get("no_bound"):
+        rows.append(("no bound", str(summary["no_bound"])))
     return rows + reference_rows(summary)
 
 
