@@ -52,6 +52,7 @@ def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[Ap
         *odd_loads(case, model),
         *_loads_and_weight(case, model, loads),
         *_unused_joints(case),
+        *_no_heads(case, model),
         *_loose_cracks(case),
         *_loose_ends(case),
         *_unspanned(case),
@@ -153,9 +154,20 @@ def _unused_joints(case: Case) -> Iterator[CaseProblem]:
     """Joints that lie between no two materials, nor in stones: most often an [[interface]] is missing."""
     names, by_material = joint_table(case)
     within = {table.cracks.joint for table in case.structure if table.cracks is not None}
+    within |= {table.head for table in case.joints.values() if table.head is not None}
     for k, name in enumerate(names):
         if not (by_material == k).any() and name not in within:
             yield CaseProblem(("joints", name), "lies between no blocks: no [[interface]] names it", at_key=True)
+
+
+def _no_heads(case: Case, model: Model) -> Iterator[CaseProblem]:
+    """Head joints of their own where no block lies in a course: they change nothing."""
+    for name, table in case.joints.items():
+        if table.head is not None and not len(model.courses):
+            message = (
+                f"{show(table.head)} changes nothing: no block lies in a course; generators of walls and the like lay"
+            )
+            yield CaseProblem(("joints", name, "head"), f"{message} courses, [[block]] does not")
 
 
 def _loose_cracks(case: Case) -> Iterator[CaseProblem]:

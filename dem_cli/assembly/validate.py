@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.arithmetic import functions
-from dem_cli.assembly.assemble import joint_table
+from dem_cli.assembly.assemble import joint_table, joints_in_heads
 from dem_cli.assembly.place_notes import NOTES
 from dem_cli.case.wording import show, unknown_name
 from dem_cli.contact.detect import block_shape, find_joints, world_corners
@@ -151,11 +151,11 @@ def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
     faces = find_joints(model, corners, CLOSING_GAP * float(model.parts.sizes.min()))
     blocks = model.part_blocks[faces.parts]
     names, by_material = joint_table(case)
-    named = np.array(names)[model.joints_between(by_material, blocks)]
+    named = model.joints_between(by_material, blocks, joints_in_heads(case))
     found = []
     for name, table in profiles.items():
         layout = PointLayout(seed=case.seed, **table.ranges)
-        fault = motion_of(model.dimension).profile_fault(model, faces, corners, layout, named == name)
+        fault = motion_of(model.dimension).profile_fault(model, faces, corners, layout, named == names.index(name))
         if fault is not None:
             found.append(CaseProblem(("joints", name, "profile", fault.key), fault.why))
     return found

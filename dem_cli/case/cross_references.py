@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from dem_cli.case.base import NOTHING
 from dem_cli.case.wording import either, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, dotted
 
@@ -49,7 +50,7 @@ def complete(data: dict[str, Any], title: str) -> None:
 def problems(data: dict[str, Any]) -> list[CaseProblem]:
     """Unknown or doubled names, and a case without blocks."""
     found = [*unknown_materials(data), *unknown_in_interfaces(data), *unknown_structures(data)]
-    found += [*unknown_bars(data), *odd_cracks(data)]
+    found += [*unknown_bars(data), *odd_cracks(data), *odd_heads(data)]
     for key in ("structure", "block"):
         seen: dict[str, KeyPath] = {}
         for path, table in entries(data, key):
@@ -216,6 +217,31 @@ def odd_cracks(data: dict[str, Any]) -> Iterator[CaseProblem]:
                 (*path, "crack"),
                 "not known beside [[imperfection]]: the pieces of a stone would get errors each its own",
             )
+
+
+def odd_heads(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Joints of heads that do not exist, that are the joint itself, or that have a joint for heads in turn."""
+    tables = data.get("joints")
+    heads = {
+        name: table["head"]
+        for name, table in (tables.items() if isinstance(tables, dict) else ())
+        if isinstance(table, dict) and isinstance(table.get("head"), str)
+    }
+    known = names(data, "joints")
+    for name, head in heads.items():
+        path = ("joints", name, "head")
+        if head == NOTHING and NOTHING in known:
+            yield CaseProblem(path, f"{show(head)} means both no joint and [joints.{NOTHING}]: give that another name")
+        elif head == NOTHING:
+            continue
+        elif head not in known:
+            others = [other for other in known if other != name]
+            yield CaseProblem(path, unknown_name("joint", head, [*others, NOTHING]))
+        elif head == name:
+            yield CaseProblem(path, f"{show(head)} is the joint itself; leave 'head' out where heads are like beds")
+        elif head in heads:
+            message = f"{show(head)} has a 'head' of its own ({show(heads[head])}): what lies in head joints has none"
+            yield CaseProblem(path, message)
 
 
 def unknown_structures(data: dict[str, Any]) -> Iterator[CaseProblem]:
