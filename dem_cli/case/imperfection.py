@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 
 from pydantic import Field, model_validator
 
+from dem_cli.arithmetic.chance import chance
 from dem_cli.case.base import CaseModel, KeyProblem, Pair, Positive
-from dem_cli.case.chance import chance
 from dem_cli.case.selection import Selection
 from dem_cli.case.wording import show
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.chance import lognormal_factor
 from dem_cli.assembly.assemble import joint_table, joints_in_heads
-from dem_cli.case.chance import lognormal_factor
 from dem_cli.contact.block_compliance import BlockCompliance, block_compliance
 from dem_cli.contact.joints import JointProperties, LawRows
 from dem_cli.contact.layout import PointLayout
