@@ -19,6 +19,7 @@ SELECTING = (  # that select blocks
 LINKS = ("tie", "reinforcement")
 WITH_REAL_MASSES = ("time-history", "fragility", "modes")
 REACTIONS = ("reaction", "reaction_moment")  # quantities of monitors of what holds blocks
+OF_CUTS = ("normal_force", "shear_force", "moment", "shear_force_across", "moment_across", "torsion")  # and of cuts
 WITH_LIVE_LOADS = ("load", "pressure")
 
 
@@ -92,15 +93,15 @@ def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProbl
 
 
 def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
-    """Monitors of reactions where blocks have real masses: samples of a motion hold no forces."""
+    """Monitors of reactions and of forces in cuts where blocks have real masses: samples of a motion hold no forces."""
     if kind not in WITH_REAL_MASSES:
         return []
     asked = [(path, table.get("quantity")) for path, table in entries(data, "monitor")]
-    message = f"is not known in kind = {show(kind)}: only analyses without time follow what holds blocks"
+    message = f"is not known in kind = {show(kind)}: only analyses without time follow such forces"
     return [
         CaseProblem((*path, "quantity"), f"{show(quantity)} {message}")
         for path, quantity in asked
-        if quantity in REACTIONS
+        if quantity in (*REACTIONS, *OF_CUTS)
     ]
 
 
