@@ -1,4 +1,4 @@
-"""Monitors of cuts: N, V and M against weights and loads in closed form, piers and base shear, drift, what is refused."""
+"""Monitors of cuts: N, V and M against weights and loads in closed form, piers and base shear, drift, refusals."""
 
 from __future__ import annotations
 
