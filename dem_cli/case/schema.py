@@ -197,9 +197,9 @@ class Monitor(Selection):
         "centroid, where that is then; of a cut, in analyses without time, what the part beyond it gives to the other: "
         "normal_force [N], compression positive, shear_force [N] along the line or first side, and moment [N m], "
         "positive where it presses the end of the line: normal force times eccentricity; in 3D also "
-        "shear_force_across and moment_across, along the normal × the first side, and torsion about the normal; of a cut "
-        "with its height, in all analyses: drift [rad], the displacement along the line between both ends of the height, "
-        "over it",
+        "shear_force_across and moment_across, along the normal × the first side, and torsion about the normal; of a "
+        "cut with its height, in all analyses: drift [rad], the displacement along the line between both ends of the "
+        "height, over it",
         examples=["rotation"],
     )
     component: Literal["x", "y", "z"] | None = Field(
