@@ -40,7 +40,8 @@ class AutomaticStiffness:
 
     fixed: float = 1e10  # where geometry is that of the start, and stiffness drops out
     digits: float = 1e-4  # there too, a weight sinks by the last digit of a coordinate over this
-    statics: float = 1e6  # where geometry moves
+    beside_links: float = 100.0  # there too, joints over the stiffest tie or bar: both have to settle in the same steps
+    statics: float = 1e6  # where geometry moves; with ties and bars everywhere at least
     dynamics: float = 1e5  # in time histories, at least: rocking may ask for more (dynamics/rocking_stiffness.py)
     settlement_overlap: float = 1e-3  # overlap that the dead loads may cause where supports move, in smallest edges
     # Share of its load that leaning over its joints may cost a structure that moves: where failed loads are tried again
