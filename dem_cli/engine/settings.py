@@ -105,6 +105,7 @@ class RelaxationSettings:
     # The same where joints remember: a load put on at once swings to nearly twice its size, and cracks or crushes what
     # it would not by itself.
     ramp_of_memory: int = 100  # steps per course
+    ramp_of_links: float = 100.0  # of dead loads: periods of the heaviest block on the softest tie or bar that yields
     stair_of_memory: int = 5
     stair_of_strain: int = 1  # of blocks that swell or shrink, which else leap off each other: joints slip as they jump
 
