@@ -222,7 +222,21 @@ def limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
             f"the failure load {search.carried:.5g} is above the associated limit load {bound:.5g}, "
             "which rigid blocks cannot exceed: do not trust this run"
         )
+    job.warnings += _clamped(job, search, bound)
     return {key: value for key, value in loads.summary().items() if not key.endswith("seconds")}
+
+
+def _clamped(job: Job, search: FailureLoad, bound: float | None) -> list[str]:
+    """A word where ties or bars hold more in the associated load, as joints that slide open in it, than in the run."""
+    limits = search.limits
+    if not (job.model.links and search.found and bound is not None and limits is not None and limits.slides):
+        return []
+    if search.carried > (1.0 - job.settings.doubts.clamped) * bound:
+        return []
+    return [
+        f"ties or bars may hold more in the associated load {bound:.5g} than in the run: joints that slide open in it, "
+        "which stretches what crosses them; without that, friction alone holds them"
+    ]
 
 
 def _of_the_start(job: Job) -> LimitLoads | None:

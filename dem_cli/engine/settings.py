@@ -144,6 +144,7 @@ class DoubtSettings:
     reweighted: float = DOUBTFUL_REWEIGHTING  # of the energy, that went or came as the areas of contact points changed
     off_the_load: float = 0.02  # of the failure load, that the curve of the collapse may peak above or below it
     above: float = 0.005  # of the associated load, that a failure load may lie above it
+    clamped: float = 0.02  # of the associated load, that a run with ties or bars may lie below it without a word
     lowered: float = 0.005  # of the load on stiff joints, that soft ones may change it by
     beyond: float = 0.005  # of the value, that a structure may stand beyond what limit analysis proved impossible
     buckles: float = 0.3  # of its load, that leaning over "auto" joints costs a structure; it falls by itself at 0.8
