@@ -90,6 +90,7 @@ def beside(job: Job, search: FailureLoad, sim: Simulation, start: StartBound) ->
     if loads is None or loads.associated.upper is None:
         return found | {"no_bound": start.why_not or f"limit analysis says: {loads.associated.status}"}  # type: ignore
     bound, resolution = loads.associated.upper, job.case.analysis.resolution
+    job.warnings += _clamped(job, search, bound)
     if not is_above(search.low, bound, resolution):
         return found
     moved = _moved(job, search, sim)
@@ -122,6 +123,19 @@ def status_beside(status: str, found: dict[str, Any]) -> str:
     """The status of a run with what `beside` found: a load that nothing explains is not "ok"."""
     above = found.get("above_the_bound")
     return ABOVE if above is not None and not above["explained"] and status == OK else status
+
+
+def _clamped(job: Job, search: FailureLoad, bound: float) -> list[str]:
+    """A word where ties or bars hold more in the associated load, as joints that slide open in it, than in the run."""
+    limits = search.limits
+    if not (job.model.links and search.found and limits is not None and limits.slides):
+        return []
+    if search.carried > (1.0 - job.settings.doubts.clamped) * bound:
+        return []
+    return [
+        f"ties or bars may hold more in the associated load {bound:.5g} than in the run: joints that slide open in it, "
+        "which stretches what crosses them; without that, friction alone holds them"
+    ]
 
 
 def _moved(job: Job, search: FailureLoad, sim: Simulation) -> Moved:

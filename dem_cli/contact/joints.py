@@ -64,8 +64,9 @@ class DrawnFaces(NamedTuple):
 PressedLaw = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
-# Parameters of the law of joints, (n, n_parameters), by their named joint (n,) and their stiffness kn [Pa/m], (n,).
-LawRows = Callable[[np.ndarray, np.ndarray], np.ndarray]
+# Parameters of the law of joints, (n, n_parameters), by their named joint (n,), their stiffness kn [Pa/m], (n,), and
+# the model with the numbers of their blocks, (n, 2).
+LawRows = Callable[[np.ndarray, np.ndarray, Model, np.ndarray], np.ndarray]
 
 
 class JointProperties(NamedTuple):
@@ -82,7 +83,8 @@ class JointProperties(NamedTuple):
     pressed: PressedLaw = lambda parameters, overlaps, memory, kn: kn * np.maximum(overlaps, 0.0)
     bonded: bool = False  # whether points lose work across the joint too: it is counted from gap to gap
     compliance: BlockCompliance | None = None  # of the blocks, lumped into their joints; None: all blocks are rigid
-    rows: LawRows | None = None  # of joints whose stiffness is not that of their name; None: these are those of `law`
+    heads: np.ndarray | None = None  # named joint in the head joints of each, −1: nothing, (n_named,); None: its own
+    rows: LawRows | None = None  # of joints whose stiffness or friction is not that of their name; None: as `law`
 
     @property
     def profiled(self) -> bool:
@@ -115,8 +117,15 @@ class JointProperties(NamedTuple):
         return np.array([2 if layout.centred else layout.points for layout in self.plane])
 
     def between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
-        """The named joint of each pair of blocks (n, 2), (n,) int64."""
-        return model.joints_between(self.by_material, blocks)
+        """The named joint of each pair of blocks (n, 2), −1: nothing is between them, (n,) int64."""
+        heads = np.arange(len(self.names)) if self.heads is None else self.heads
+        return model.joints_between(self.by_material, blocks, heads)
+
+    def acting(self, model: Model, faces: Faces) -> Faces:
+        """Those of some faces between which anything can act: not those in head joints that are not filled."""
+        if self.heads is None or (self.heads >= 0).all():
+            return faces
+        return faces.where(self.between(model, model.part_blocks[faces.parts]) >= 0)
 
     def rigid_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
         """Whether the joint of each pair of blocks (n, 2) is as rigid as the solver can make it, (n,) bool."""
@@ -134,9 +143,9 @@ class JointProperties(NamedTuple):
         together = self.compliance.in_series(np.column_stack([kn, ks]), faces, named)
         return together[:, 0], together[:, 1]
 
-    def law_of(self, named: np.ndarray, kn: np.ndarray) -> np.ndarray:
-        """Parameters of the law of joints by name and stiffness kn [Pa/m], (n, n_parameters)."""
-        return np.ascontiguousarray(self.law[named] if self.rows is None else self.rows(named, kn))
+    def law_of(self, named: np.ndarray, kn: np.ndarray, model: Model, blocks: np.ndarray) -> np.ndarray:
+        """Parameters of the law of joints by name, stiffness kn [Pa/m] and pair of blocks (n, 2), (n, n_parameters)."""
+        return np.ascontiguousarray(self.law[named] if self.rows is None else self.rows(named, kn, model, blocks))
 
 
 class JointGeometry(Protocol):
@@ -208,7 +217,7 @@ def joints_of(
         points=np.zeros((n_points, d)),
         kn=(kn * areas)[owners] * shares,
         ks=(ks * areas)[owners] * shares,
-        law=properties.law_of(named, kn),
+        law=properties.law_of(named, kn, model, blocks),
         held=np.full(len(blocks), -1),
     )
 

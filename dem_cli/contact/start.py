@@ -86,7 +86,7 @@ def joints_of_start(
     one plane.
     """
     narrow, reach = geometry_of(model.dimension), near * smallest
-    faces = narrow.find(model, bodies.corners, reach)
+    faces = properties.acting(model, narrow.find(model, bodies.corners, reach))
     faces = faces.where(narrow.touching(model, faces, bodies.corners, reach))
     built = build_joints(model, faces, bodies, properties, n_memory, moves=False)
     close_touching(built.contacts, smallest, near)

@@ -10,7 +10,7 @@ import numpy as np
 from dem_cli.contact.block_compliance import BlockCompliance
 from dem_cli.contact.joints import points_in_use
 from dem_cli.engine.simulation import Simulation
-from dem_cli.geometry.rotation import quaternions, rotation_vectors, turned_since, turning
+from dem_cli.geometry.rotation import frames, quaternions, rotation_vectors, turned_since, turning
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies
 from dem_cli.links.link import FIXED_POINT
@@ -21,6 +21,15 @@ from dem_cli.output.record import ContactRecord, Energy, Frame, LinkPlaces, Link
 
 ROUND_OFF = 1e-9  # of forces that cancel on a block: what is left of them is none
 NET, ALL = 0, 1  # of Contacts.exchanged
+
+
+class PointPushes(NamedTuple):
+    """Forces of contact points at one instant, and where their joints were before anything moved."""
+
+    blocks: np.ndarray  # both blocks, (n, 2) int64
+    places: np.ndarray  # where they act [m], (n, d)
+    middles: np.ndarray  # mean of the points of the same joint, as they lay in the undeformed first block [m], (n, d)
+    on_second: np.ndarray  # force on the second block [N], (n, d)
 
 
 class EnergySums(NamedTuple):
@@ -237,6 +246,26 @@ def contact_points(sim: Simulation, blocks: np.ndarray) -> np.ndarray:
         return sim.joints.points
     bodies, arms = sim.bodies, sim.joints.points - (sim.model.centroids - sim.origin)[blocks]
     return bodies.positions[blocks] + turning(bodies.orientations[blocks])(arms)
+
+
+def point_pushes(sim: Simulation) -> PointPushes:
+    """Forces of all contact points now, where the kernels let them act."""
+    joints, contacts, model = sim.joints, sim.measured(), sim.model
+    used, owner = points_in_use(joints), joints.owners
+    first = joints.blocks[owner, 0]
+    places = joints.points + sim.origin
+    drawn = places
+    if sim.kinematics == "large":
+        arms = joints.points - sim.bodies.positions[first]
+        drawn = model.centroids[first] + turning(-rotation_vectors(sim.bodies.orientations)[first])(arms)
+    counts = np.maximum(np.bincount(owner[used], minlength=len(joints.blocks)), 1)
+    middles = np.column_stack([np.bincount(owner[used], along, len(counts)) for along in drawn[used].T])
+    axes = frames(joints.frames, model.dimension)
+    forces = np.column_stack([contacts.normal, contacts.shear])
+    return PointPushes(
+        joints.blocks[owner][used], places[used], (middles / counts[:, None])[owner][used],
+        (forces[:, :, None] * axes).sum(axis=1)[used],
+    )  # fmt: skip
 
 
 def contact_record(sim: Simulation) -> ContactRecord:

@@ -93,7 +93,8 @@ class JointTracking:
 
     def faces_within(self, bodies: Bodies, distance: float) -> Faces:
         """Pairs of faces that are nearer to each other than a distance [m], where the blocks are now."""
-        return self.narrow.find(self.model, bodies.corners, distance)
+        found = self.narrow.find(self.model, bodies.corners, distance)
+        return self.properties.acting(self.model, found)
 
     @property
     def farthest(self) -> float:

@@ -188,6 +188,16 @@ MODEL = {
         least=-1,
         optional=True,
     ),
+    "courses": Described(
+        "course that each block is laid in and the row across it, by number; -1: in no course, row 0: all of them; "
+        "where head joints are not like beds alone",
+        PURE,
+        _COMPONENT,
+        ("course", "row"),
+        kind=WHOLE,
+        least=-1,
+        optional=True,
+    ),
     "restrained": Described(
         "whether each motion of the block is held; where the case has restraints alone",
         PURE,

@@ -40,6 +40,13 @@ MONITOR_UNITS = {  # by what is followed
     "elongation": "m",
     "reaction": "N",
     "reaction_moment": "N m",
+    "normal_force": "N",
+    "shear_force": "N",
+    "moment": "N m",
+    "shear_force_across": "N",
+    "moment_across": "N m",
+    "torsion": "N m",
+    "drift": "rad",
 }
 MONITOR_UNITS |= {f"absolute {name}": MONITOR_UNITS[name] for name in ("displacement", "velocity", "acceleration")}
 FALLS = "does not stand under its dead loads"  # status of a run of any kind, of limit analysis too
