@@ -80,14 +80,21 @@ def _keeps(geometry, bodies, joint, a, b):
 
 
 @inline
-def pressed_in_space(places, normals, first, last, like):
-    """Centre of pressure of the points from first to last of a joint [m]; the place of the first where none press."""
+def pressed_in_space(places, normals, stiffness, first, last, like):
+    """Centre of pressure of the points from first to last of a joint [m]; where none press, that of an even one."""
     push, centre = 0.0, scale(0.0, like)
     for p in range(first, last):
         point = np.uint64(p)
         push += normals[point]
         centre = axpy(normals[point], load(places, point, 0, like), centre)
-    return scale(1.0 / push, centre) if push > LEAST_PUSH else load(places, np.uint64(first), 0, like)
+    if push > LEAST_PUSH:
+        return scale(1.0 / push, centre)
+    push, centre = LEAST_PUSH, scale(0.0, like)
+    for p in range(first, last):
+        point = np.uint64(p)
+        push += stiffness[point]
+        centre = axpy(stiffness[point], load(places, point, 0, like), centre)
+    return scale(1.0 / push, centre)
 
 
 def make_spatial_forces(
@@ -132,7 +139,7 @@ def make_spatial_forces(
                 gradient_a, gradient_b = load_matrix(stretchings, a, like), load_matrix(stretchings, b, like)
             share, rub, middle, centre = joints.torsion[joint], scale(0.0, like), scale(0.0, like), xa
             if share != 1.0:
-                centre = pressed_in_space(places, normals, starts[joint], starts[number + 1], like)
+                centre = pressed_in_space(places, normals, stiffness, starts[joint], starts[number + 1], like)
                 arm_a, arm_b = axpy(-1.0, xa, centre), axpy(-1.0, xb, centre)
                 middle = axpy(1.0, axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b)), relative)
                 middle = scale(1.0 - share, middle)

@@ -1,0 +1,31 @@
+"""Corner forces: friction of joints in space as forces at their contact points, equal to where it acts.
+
+Friction acts nearer to the centre of pressure than its point (kernels/torsion.py). A reader of results knows points
+alone: there, β Tᵢ + (1 − β) (Nᵢ/N) ΣT has the same resultant and moment, and is in the cone of its point.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dem_cli.geometry.rotation import frames
+from dem_cli.kernels.records import Joints
+
+
+def at_corners(joints: Joints, normal: np.ndarray, shear: np.ndarray) -> np.ndarray:
+    """Shear forces that act at the points, along their tangents [N], (n_points, d − 1); normal [N], (n_points,).
+
+    shear: as the loops have them [N], (n_points, d − 1), which comes back where torsion is no matter.
+    """
+    owners = joints.owners
+    if not (joints.torsion != 1.0).any():
+        return shear
+    share = joints.torsion[owners][:, None]
+    tangents = frames(joints.frames, 3)[:, 1:]
+    along = (shear[:, :, None] * tangents).sum(axis=1)
+    n = len(joints.blocks)
+    together = np.column_stack([np.bincount(owners, along[:, k], n) for k in range(3)])
+    pressed = np.bincount(owners, normal, n)
+    parts = normal / np.where(pressed > 0.0, pressed, 1.0)[owners]
+    mean = (together[owners][:, None] * tangents).sum(axis=2) * parts[:, None]
+    return np.where(share == 1.0, shear, share * shear + (1.0 - share) * mean)
