@@ -72,7 +72,7 @@ class JointProperties(NamedTuple):
     intact: np.ndarray  # what points that touch at the start remember, (n_named, n_scalars)
     layouts: tuple[PointLayout | None, ...]  # where the contact points are; None: at the two ends of the joint
     spread: np.ndarray  # in space: rigid ones with points at their corners because nobody asked for others, and without
-    # bonds, whose friction has the torsion of a spread pressure (kernels/torsion.py), (n_named,) bool
+    # bonds, whose friction has the torsion of a spread pressure (contact/corner_forces.py), (n_named,) bool
     rigid: np.ndarray  # whose stiffness is a means and no property: kn = "auto", no block deforms, (n_named,) bool
     pressed: PressedLaw = lambda parameters, overlaps, memory, kn: kn * np.maximum(overlaps, 0.0)
     bonded: bool = False  # whether points lose work across the joint too: it is counted from gap to gap

@@ -5,8 +5,8 @@ point adds its place in the joint plane. Forces add up in the frame and are turn
 integrated from the closing velocity (exact for constant arms, so that the joint stiffness drops out of a failure load).
 
 In space friction acts nearer to the centre of pressure c of the step before than its point r, at c + β (r − c)
-(kernels/torsion.py). Slides there are linear in r, and so is the moment: one slide, one spin and one moment of the
-joint know of β, and no point does.
+(contact/corner_forces.py). Slides there are linear in r, and so is the moment: one slide, one spin and one moment of
+the joint know of β, and no point does.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ class FixedJoints(NamedTuple):
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
     torsion: np.ndarray = NO_SHARES  # in space: how far from the centre of pressure friction acts, over the distance of
-    # its point (kernels/torsion.py), 1: at the point itself, (n_joints,)
+    # its point (contact/corner_forces.py), 1: at the point itself, (n_joints,)
     tiles: JointTiles = NO_TILES  # of these joints, for laws that have a form for lanes
 
     @property

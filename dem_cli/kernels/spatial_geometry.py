@@ -10,10 +10,9 @@ from __future__ import annotations
 import math
 
 from dem_cli.kernels.jit import inline, kernel
-from dem_cli.kernels.overlap import SAME, area_of, clip, share_area, simplify
+from dem_cli.kernels.overlap import OF_LINE, SAME, area_of, clip, mean_distance, share_area, simplify
 from dem_cli.kernels.records import EDGES, FACES, RIM_OF_A, RIM_OF_B
 from dem_cli.kernels.separation import NO_EDGE, cross3, minus3, row3, separate, unit3
-from dem_cli.kernels.torsion import OF_LINE, mean_distance
 from dem_cli.kernels.vec import axpy, dot
 
 STEEP = math.cos(math.radians(30.0))  # faces within that angle look at each other
@@ -370,7 +369,7 @@ def describe(solids, parts, faces, starts, work, out, kinds_out, counts_out):
     starts: room for the points of each, (n + 1,): as many as both faces have corners; work: (5, room of one pair, 3).
     out: frames (n, 9); and in the room of each pair places (3 columns), weights [m² or 1], gaps [m], features; measures
     (n, 8): how far the contact reaches [m], area, gap at the centroid, polar moment, centroid, torsion
-    (kernels/torsion.py).
+    (contact/corner_forces.py).
     """
     for joint in range(parts.shape[0]):
         pair_of_faces = (faces[joint, 0], faces[joint, 1])

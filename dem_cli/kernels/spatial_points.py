@@ -14,12 +14,23 @@ from __future__ import annotations
 import math
 
 from dem_cli.kernels.jit import always_inline, kernel
-from dem_cli.kernels.overlap import ROUND_OFF, SAME, SHARE, area_of, clip, fading_areas, held_inside, simplify, tilted
+from dem_cli.kernels.overlap import (
+    OF_LINE,
+    ROUND_OFF,
+    SAME,
+    SHARE,
+    area_of,
+    clip,
+    fading_areas,
+    held_inside,
+    mean_distance,
+    simplify,
+    tilted,
+)
 from dem_cli.kernels.records import CORNER_OF_A, CORNER_OF_B, CROSSING, EDGES, FACES, FIXED_TO_B, RIM_OF_A, RIM_OF_B
 from dem_cli.kernels.separation import NO_EDGE, cross3, minus3, row3, separate, unit3
 from dem_cli.kernels.spatial_features import NONE, carried3, carried_back3, height_inside, tangents3
 from dem_cli.kernels.spatial_geometry import STEEP
-from dem_cli.kernels.torsion import OF_LINE, mean_distance
 from dem_cli.kernels.vec import axpy, dot
 
 # Columns of SpatialMotion.scales.
@@ -31,7 +42,7 @@ FLOOR = 5  # area of a face joint, at least [m²]
 REACH = 6  # how high features outside of face joints may lie over the face [m]
 CENTRED = 7  # 1: face joints have a point at their centroid as well
 OWN = 8  # share of the area that corners have where points of a rule lie within; 0: there are none
-SPREAD = 9  # 1: friction has the torsion of a spread pressure (kernels/torsion.py)
+SPREAD = 9  # 1: friction has the torsion of a spread pressure (contact/corner_forces.py)
 
 MOVED = 1e-3  # of SIZE: motion along the joint after which it is renewed
 SLIVER = 1e-6  # of FLOOR: overlaps below it are none; tips sink unseen by about its root

@@ -6,8 +6,8 @@ In units of a mean block weight W and of W over a median joint stiffness. For ev
     c = c(μN, T) ∈ K,  a ∈ K,                   c ∘ a = 0      reserve of friction, slip (plastic) in this increment
     Bt (u − u₀) = −(T − T₀)/ks + γ(a)                          slide: elastic and plastic part
 
-In space friction acts nearer to the centre of pressure of its joint than its point (kernels/torsion.py): Bt is that of
-the normal forces at the begin of the increment, which are those at its end where the load grows no more.
+In space friction acts nearer to the centre of pressure of its joint than its point (contact/corner_forces.py): Bt is
+that of the normal forces at the begin of the increment, which are those at its end where the load grows no more.
 
 with the cones K of limit.slips, equilibrium Bᵀ(N, T) + dead + λ live = 0 and live·u = D. The bound μN moves with N
 inside Newton's iteration, so that the law is the real, non-associated one; the matrix is not symmetric.
@@ -180,7 +180,7 @@ class Elastic:
 
 
 class DrawnFriction:
-    """Friction of points in space at c + β (r − c), c: centre of pressure of the joint (kernels/torsion.py).
+    """Friction of points in space at c + β (r − c), c: centre of pressure of the joint (contact/corner_forces.py).
 
     Slides there are β times those of the points and 1 − β times their mean by normal forces, as these are linear in r.
     """

@@ -14,7 +14,7 @@ from studies.space.structures import box, prism, tables
 from dem_cli.contact.corner_forces import at_corners
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.kernels import records as slot
-from dem_cli.kernels.torsion import mean_distance
+from dem_cli.kernels.overlap import mean_distance
 from dem_cli.limit.analysis import LimitLoads, limit_loads
 
 MU, H = 0.6, 0.2
