@@ -34,6 +34,7 @@ def in_planes(joints: Joints, gaps: np.ndarray, positions: np.ndarray) -> FixedJ
         kn=joints.kn,
         ks=joints.ks,
         law=joints.law,
+        torsion=joints.torsion,
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from dem_cli.contact.block_compliance import BlockCompliance
 from dem_cli.contact.layout import PointLayout
+from dem_cli.kernels.fixed_joints import NO_SHARES
 from dem_cli.kernels.records import Contacts, FixedJoints, Joints, MovingJoints
 from dem_cli.model.copies import numbered_through, repeated
 from dem_cli.model.model import Model
@@ -79,6 +80,8 @@ class JointProperties(NamedTuple):
     law: np.ndarray  # parameters of the law, (n_named, n_parameters)
     intact: np.ndarray  # what points that touch at the start remember, (n_named, n_scalars)
     layouts: tuple[PointLayout | None, ...]  # where the contact points are; None: at the two ends of the joint
+    spread: np.ndarray  # in space: rigid ones with points at their corners because nobody asked for others, and without
+    # bonds, whose friction has the torsion of a spread pressure (contact/corner_forces.py), (n_named,) bool
     rigid: np.ndarray  # whose stiffness is a means and no property: kn = "auto", no block deforms, (n_named,) bool
     pressed: PressedLaw = lambda parameters, overlaps, memory, kn: kn * np.maximum(overlaps, 0.0)
     bonded: bool = False  # whether points lose work across the joint too: it is counted from gap to gap
@@ -131,6 +134,10 @@ class JointProperties(NamedTuple):
         """Whether the joint of each pair of blocks (n, 2) is as rigid as the solver can make it, (n,) bool."""
         rigid = self.rigid[self.between(model, blocks)]
         return rigid if self.compliance is None else rigid & ~self.compliance.deforms[blocks].any(axis=1)
+
+    def spread_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
+        """Whether friction between each pair of blocks (n, 2) has the torsion of a spread pressure, (n,) bool."""
+        return self.spread[self.between(model, blocks)] & self.rigid_between(model, blocks)
 
     def stiffness_of(self, named: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """kn and ks of joints by name and faces [Pa/m], (n,) each, with what their blocks give way.
@@ -197,12 +204,18 @@ def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) 
 
 
 def joints_of(
-    model: Model, faces: Faces, properties: JointProperties, starts: np.ndarray, areas: np.ndarray, shares: np.ndarray
+    model: Model,
+    faces: Faces,
+    properties: JointProperties,
+    starts: np.ndarray,
+    areas: np.ndarray,
+    shares: np.ndarray,
+    torsion: np.ndarray = NO_SHARES,
 ) -> MovingJoints:
     """Joints of pairs of faces with their stiffness and law; frames, levers and points are yet to be placed.
 
     starts: first point of each joint, (n_joints + 1,); areas: of the joints [m²], (n_joints,); shares: of it that
-    belong to each point, (n_points,).
+    belong to each point, (n_points,); torsion: in space, as FixedJoints.torsion, (n_joints,).
     """
     d, r, n_points = model.dimension, model.inertias.shape[1], int(starts[-1])
     blocks = model.part_blocks[faces.parts]
@@ -218,6 +231,7 @@ def joints_of(
         kn=(kn * areas)[owners] * shares,
         ks=(ks * areas)[owners] * shares,
         law=properties.law_of(named, kn, model, blocks),
+        torsion=torsion,
         held=np.full(len(blocks), -1),
     )
 

@@ -18,8 +18,8 @@ from dem_cli.output.resume.likeness import alike
 
 Simulation = Any  # that of simulation.py, which imports this file
 _ROWS: dict[str, dict[str, str]] = {  # fields of records by how many rows they have; of those with "?" maybe none
-    "MovingJoints": {"joints": "blocks law", "points": "frames levers points kn ks", "joints?": "held"},
-    "FixedJoints": {"joints": "blocks law axes anchors arms", "points": "places kn ks"},
+    "MovingJoints": {"joints": "blocks law", "points": "frames levers points kn ks", "joints?": "held torsion"},
+    "FixedJoints": {"joints": "blocks law axes anchors arms", "points": "places kn ks", "joints?": "torsion"},
     "PlanarGeometry": {"joints": "keys edges scales", "points": "features", "points?": "profile", "joints?": "sunk"},
     "SpatialGeometry": {
         "joints": "keys kinds corners areas", "points": "features", "joints?": "axes", "points?": "places gaps",

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.contact.block_compliance import BlockCompliance
+from dem_cli.contact.corner_forces import at_corners
 from dem_cli.contact.joints import points_in_use
 from dem_cli.engine.simulation import Simulation
 from dem_cli.geometry.rotation import frames, quaternions, rotation_vectors, turned_since, turning
@@ -283,7 +284,7 @@ def contact_record(sim: Simulation) -> ContactRecord:
         points=contact_points(sim, joints.blocks[owner, 0]) + sim.origin,
         normals=joints.frames[:, :d].copy(),
         normal_force=contacts.normal,
-        shear_force=contacts.shear,
+        shear_force=at_corners(joints, contacts.normal, contacts.shear),
         gap=contacts.gaps,
         slip=contacts.slip,
         state=state.astype(np.int8),

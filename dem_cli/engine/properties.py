@@ -73,17 +73,24 @@ def joint_properties(
     bent = set(lying[:, np.flatnonzero(bending)].ravel().tolist())  # two points cannot tell how a block bends
     lands = hasattr(case.analysis, "margin") if lands is None else lands
     layouts = tuple(_layout(table, case, k in deforming, lands and k not in bent) for k, table in enumerate(tables))
+    spread = [layout is None and _spreads(table) for layout, table in zip(layouts, tables, strict=True)]
     rigid = free[:, 0] & _with_rigid_blocks(names, model, lying, compliance)
     own_rows = _own_rows(tables, laws, columns, _OfEachJoint(names, step, compliance is not None, case.seed))
     law = mixed(tuple(laws))
+    spreads = np.array(spread) & (model.n_modes == 0)
     return JointProperties(
-        names, by_material, kn, ks, columns, intact, layouts, rigid, law.pressed, law.bonded, compliance, heads,
-        own_rows,
+        names, by_material, kn, ks, columns, intact, layouts, spreads, rigid, law.pressed, law.bonded, compliance,
+        heads, own_rows,
     )  # fmt: skip
 
 
 def _law(table: StiffJoint) -> Law:
     return LAWS[table.law].of(table)
+
+
+def _spreads(table: StiffJoint) -> bool:
+    """Whether friction may act as that of a spread pressure: nobody asked for points, and nothing bonds them."""
+    return table.points is None and table.profile is None and not _law(table).bonded
 
 
 def _layout(table: StiffJoint, case: Case, deforms: bool, lands: bool) -> PointLayout | None:

@@ -12,6 +12,8 @@ import numpy as np
 
 from dem_cli.kernels.tiles.joint_tiles import NO_TILES, JointTiles
 
+NO_SHARES = np.zeros(0)
+
 
 class FixedJoints(NamedTuple):
     """Joints as geometry of the start has them; a joint owns points starts[j]:starts[j + 1]."""
@@ -25,6 +27,8 @@ class FixedJoints(NamedTuple):
     kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
+    torsion: np.ndarray = NO_SHARES  # in space: how far from the centre of pressure friction acts, over the distance of
+    # its point (contact/corner_forces.py), 1: at the point itself, (n_joints,)
     tiles: JointTiles = NO_TILES  # of these joints, for laws that have a form for lanes
 
     @property

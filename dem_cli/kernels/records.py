@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.kernels.fixed_joints import FixedJoints
+from dem_cli.kernels.fixed_joints import NO_SHARES, FixedJoints
 
 NO_MODES = np.zeros((0, 0))
 NOTHING, NO_JOINTS = np.zeros(0, np.int8), np.zeros(0, np.int64)
@@ -73,6 +73,7 @@ class MovingJoints(NamedTuple):
     kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
+    torsion: np.ndarray = NO_SHARES  # in space: as FixedJoints.torsion, (n_joints,)
     held: np.ndarray = NO_JOINTS  # in space: points that touch, n; −1 − n where geometry was just measured, (n_joints,)
 
     @property
@@ -81,8 +82,8 @@ class MovingJoints(NamedTuple):
         return np.repeat(np.arange(len(self.blocks)), np.diff(self.starts))
 
     def kept(self) -> MovingJoints:
-        """The same with a copy of what changes as blocks move in space: the stiffness of points."""
-        return self._replace(kn=self.kn.copy(), ks=self.ks.copy())
+        """The same with a copy of what changes as blocks move in space: stiffness of points, torsion of joints."""
+        return self._replace(kn=self.kn.copy(), ks=self.ks.copy(), torsion=self.torsion.copy())
 
 
 # What both have in common: blocks, starts, owners, frames, levers, points, kn, ks, law.
@@ -176,7 +177,7 @@ class SpatialMotion(NamedTuple):
     markers: np.ndarray  # two corners of face b in the frame of block a, at the last renewal [m], (n_joints, 6)
     apart: np.ndarray  # from centroid b to a when geometry was measured that may be held, else nan [m], (n_joints, 3)
     opened: np.ndarray  # by how much a point opened since the step before it was measured [m], (n_points,)
-    scales: np.ndarray  # columns as in spatial_points.py, (n_joints, 9)
+    scales: np.ndarray  # columns as in spatial_points.py, (n_joints, 10)
     edges: (
         np.ndarray
     )  # of joints of two edges: corners of that of a and of that of b, sign of the normal; −1: none, (n, 5)
