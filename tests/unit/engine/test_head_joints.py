@@ -86,7 +86,7 @@ def test_unfilled_heads_are_open_heads_in_limit_analysis(dimension):
 
 @pytest.mark.parametrize(
     ("dimension", "kinematics"),
-    [(2, "fixed"), *(pytest.param(*one, marks=pytest.mark.slow) for one in ((3, "fixed"), (2, "large")))],
+    [(2, "fixed"), (3, "fixed"), (2, "large")],
 )
 def test_unfilled_heads_are_open_heads_in_the_loop(dimension, kinematics):
     how = f"analysis.kinematics={kinematics!r}"
