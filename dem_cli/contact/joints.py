@@ -9,7 +9,7 @@ import numpy as np
 
 from dem_cli.contact.block_compliance import BlockCompliance
 from dem_cli.contact.layout import PointLayout
-from dem_cli.kernels.records import Contacts, FixedJoints, Joints, MovingJoints
+from dem_cli.kernels.records import NOTHING, Contacts, FixedJoints, Joints, MovingJoints
 from dem_cli.model.model import Model
 
 
@@ -73,6 +73,7 @@ class JointProperties(NamedTuple):
     rigid: np.ndarray  # whose stiffness is a means and no property: kn = "auto", no block deforms, (n_named,) bool
     pressed: PressedLaw = lambda parameters, overlaps, memory, kn: kn * np.maximum(overlaps, 0.0)
     bonded: bool = False  # whether points lose work across the joint too: it is counted from gap to gap
+    integrated: np.ndarray | None = None  # whose pressure is integrated where elastic, (n_named,) bool; None: of none
     compliance: BlockCompliance | None = None  # of the blocks, lumped into their joints; None: all blocks are rigid
     rows: LawRows | None = None  # of joints whose stiffness is not that of their name; None: these are those of `law`
 
@@ -114,6 +115,12 @@ class JointProperties(NamedTuple):
         """Whether the joint of each pair of blocks (n, 2) is as rigid as the solver can make it, (n,) bool."""
         rigid = self.rigid[self.between(model, blocks)]
         return rigid if self.compliance is None else rigid & ~self.compliance.deforms[blocks].any(axis=1)
+
+    def integrated_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
+        """Whether the pressure on the joint of each pair of blocks (n, 2) is integrated over their faces, (n,) bool."""
+        if self.integrated is None:
+            return np.zeros(len(blocks), bool)
+        return self.integrated[self.between(model, blocks)] & ~self.rigid_between(model, blocks)
 
     def stiffness_of(self, named: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """kn and ks of joints by name and faces [Pa/m], (n,) each, with what their blocks give way.
@@ -161,8 +168,8 @@ class JointArrays(NamedTuple):
     contacts: Contacts
 
 
-def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) -> Contacts:
-    """Contacts that carry nothing."""
+def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int, elastic: bool = False) -> Contacts:
+    """Contacts that carry nothing. elastic: there are faces over which pressure is integrated."""
     return Contacts(
         gaps=np.zeros(n_points),
         shear=np.zeros((n_points, dimension - 1)),
@@ -173,22 +180,33 @@ def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) 
         stale=np.zeros(n_joints + 1, np.int8),
         exchanged=np.zeros(2),
         jolts=np.zeros(1),
+        lumped=np.zeros(n_points if elastic else 0),
     )
 
 
 def joints_of(
-    model: Model, faces: Faces, properties: JointProperties, starts: np.ndarray, areas: np.ndarray, shares: np.ndarray
+    model: Model,
+    faces: Faces,
+    properties: JointProperties,
+    starts: np.ndarray,
+    areas: np.ndarray,
+    shares: np.ndarray,
+    lone: np.ndarray | bool = False,
 ) -> MovingJoints:
     """Joints of pairs of faces with their stiffness and law; frames, levers and points are yet to be placed.
 
     starts: first point of each joint, (n_joints + 1,); areas: of the joints [m²], (n_joints,); shares: of it that
-    belong to each point, (n_points,).
+    belong to each point, (n_points,); lone: joints of an edge or a corner, that have no face, (n_joints,) bool.
     """
     d, r, n_points = model.dimension, model.inertias.shape[1], int(starts[-1])
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
     kn, ks = properties.stiffness_of(named, faces.faces)
     owners = np.repeat(np.arange(len(blocks)), np.diff(starts))
+    integrated = properties.integrated_between(model, blocks) & ~lone
+    elastic = {}
+    if integrated.any():
+        elastic = {"integrated": integrated.astype(np.int8), "after": np.arange(n_points), "fans": np.zeros(n_points)}
     return MovingJoints(
         blocks=blocks,
         starts=starts,
@@ -199,6 +217,7 @@ def joints_of(
         ks=(ks * areas)[owners] * shares,
         law=properties.law_of(named, kn),
         held=np.full(len(blocks), -1),
+        **elastic,
     )
 
 
@@ -215,7 +234,9 @@ def points_of(starts: np.ndarray, joints: np.ndarray) -> np.ndarray:
 
 
 def only_points(joints: Joints, kept: np.ndarray) -> Joints:
-    """The joints with some of their points only; kept: (n_points,) bool."""
+    """The joints with some of their points only, which carry what they do by themselves; kept: (n_points,) bool."""
     starts = np.concatenate([[0], np.cumsum(kept)])[joints.starts]
     own = ("places",) if isinstance(joints, FixedJoints) else ("frames", "levers", "points")
-    return joints._replace(starts=starts, **{name: getattr(joints, name)[kept] for name in (*own, "kn", "ks")})
+    return joints._replace(
+        starts=starts, **{name: getattr(joints, name)[kept] for name in (*own, "kn", "ks")}, integrated=NOTHING
+    )

@@ -67,17 +67,28 @@ def joint_properties(
     deforming = _with_deforming_blocks(model, by_material, compliance, np.flatnonzero(bending))
     bent = set(by_material[np.flatnonzero(bending)].ravel().tolist())  # two points cannot tell how a block bends
     lands = hasattr(case.analysis, "margin") if lands is None else lands
-    layouts = tuple(_layout(table, case, k in deforming, lands and k not in bent) for k, table in enumerate(tables))
+    integrated = np.array([_integrates(table) and k not in bent for k, table in enumerate(tables)])
+    layouts = tuple(
+        None if integrated[k] and (k in deforming or table.kn != "auto")
+        else _layout(table, case, k in deforming, lands and k not in bent)
+        for k, table in enumerate(tables)
+    )  # fmt: skip
     rigid = free[:, 0] & _with_rigid_blocks(names, model, by_material, compliance)
     own_rows = None if compliance is None else _own_rows(tables, laws, columns, step)
     law = mixed(tuple(laws))
     return JointProperties(
-        names, by_material, kn, ks, columns, intact, layouts, rigid, law.pressed, law.bonded, compliance, own_rows
+        names, by_material, kn, ks, columns, intact, layouts, rigid, law.pressed, law.bonded, integrated, compliance,
+        own_rows,
     )  # fmt: skip
 
 
 def _law(table: StiffJoint) -> Law:
     return LAWS[table.law].of(table)
+
+
+def _integrates(table: StiffJoint) -> bool:
+    """Whether the pressure on an elastic joint is integrated: it is plane, without tension, and no points are asked for."""
+    return table.points is None and table.profile is None and not _law(table).bonded
 
 
 def _layout(table: StiffJoint, case: Case, deforms: bool, lands: bool) -> PointLayout | None:

@@ -14,7 +14,7 @@ from dem_cli.contact.start import bodies_at_rest
 from dem_cli.engine.fictitious_masses import fictitious_masses
 from dem_cli.engine.kept_scene import guard_of
 from dem_cli.engine.loads import loads_of
-from dem_cli.engine.loops import compiled_advance
+from dem_cli.engine.loops import LINEAR, QUADRATIC, RIGID, compiled_advance
 from dem_cli.engine.placement.clearances import play_of_start
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
@@ -25,6 +25,7 @@ from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.fixed_joints import FixedJoints
 from dem_cli.kernels.jit import CompiledKernel, threads_may_share
+from dem_cli.kernels.pressed_faces import INTEGRATED
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.links.link import Springs
@@ -165,6 +166,8 @@ class Simulation:
         """Whether joints are worked on many at once; few are not worth another kernel."""
         if self.kinematics != "fixed" or self.model.n_modes or self.law.of_lanes is None:
             return False
+        if self.integrates:
+            return False
         return len(self.joints.kn) >= self.settings.detection.tiled_from
 
     def set_masses(self) -> None:
@@ -278,8 +281,18 @@ class Simulation:
         model = self.model
         return compiled_advance(
             self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
-            model.n_modes > 0, len(model.mode_shapes) > 0, self.tiled,
+            self.order_within_blocks, self.tiled, self.integrates,
         )  # fmt: skip
+
+    @property
+    def order_within_blocks(self) -> int:
+        """Order of the polynomials that displacements within blocks are, as engine/loops.py has them."""
+        return QUADRATIC if len(self.model.mode_shapes) else LINEAR if self.model.n_modes else RIGID
+
+    @property
+    def integrates(self) -> bool:
+        """Whether there are faces over which pressure is integrated."""
+        return len(self.contacts.lumped) > 0
 
     @property
     def speeds(self) -> np.ndarray:
@@ -426,10 +439,16 @@ class Simulation:
     def elastic_energy(self) -> float:
         """In the springs of the joints and of links, and in blocks that deform [J]."""
         contacts, (kn, ks) = self.contacts, self._stiffness()
-        normal = (contacts.normal**2 / kn).sum()
+        normal = (contacts.normal**2 / kn).sum() if not self.integrates else self._pressed_energy(kn)
         shear = ((contacts.shear**2).sum(axis=1) / ks).sum()
         inside = (self.shape.mode_stiffness * self.bodies.modes**2).sum() if self.model.n_modes else 0.0
         return 0.5 * float(normal + shear + inside) + elastic_energy_of_links(self.links)
+
+    def _pressed_energy(self, kn: np.ndarray) -> float:
+        """Twice that in normal springs where pressure is integrated over some faces (kernels/pressed_faces.py) [J]."""
+        contacts, joints = self.contacts, self.joints
+        whole = joints.integrated[joints.owners] == INTEGRATED
+        return float(np.where(whole, -contacts.normal * contacts.gaps, contacts.normal**2 / kn).sum())
 
     def _stiffness(self) -> tuple[np.ndarray, np.ndarray]:
         """Of all contact points along normal and tangents, 1 where there is none; that of fixed joints is kept."""

@@ -18,13 +18,17 @@ from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apa
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import add_moment_at, moment, opening_at, seen_from, seen_outside, sliding_at, sweep
+from dem_cli.kernels.pressed_faces import share_pressure
 from dem_cli.kernels.vec import axpy, components, compose, load, load_frame, scale
 
 
-def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = False, bends: bool = False) -> Callable:
+def make_contact_forces(
+    law: Callable, bonded: bool = False, strains: bool = False, bends: bool = False, elastic: bool = False
+) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
-    strains: blocks deform (kernels/deformation); bends: in quadratic modes as well, 2D.
+    strains: blocks deform (kernels/deformation); bends: in quadratic modes as well, 2D;
+    elastic: there are faces over which pressure is integrated (kernels/pressed_faces.py).
     """
     press = make_press(law, bonded)
 
@@ -55,6 +59,17 @@ def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = Fal
                 sums = (nothing, nothing, nothing)
             opens, slides = components(frame, scale(dt, moved))
             spin = seen_from(frame, scale(dt, axpy(-1.0, spin_a, spin_b)))
+            if elastic:
+                for p in range(starts[joint], starts[number + 1]):
+                    point = np.uint64(p)
+                    place = load(places, point, 0, like[1:])
+                    opened = opens + opening_at(spin, place)
+                    if strains:
+                        opened += spread_at(spread, place)[0]
+                    if bends:
+                        opened += dt * apart_at(line, place[0], frame)[0]
+                    gaps[point] += opened
+                share_pressure(joints, contacts, number)
             push, rub, twist = 0.0, scale(0.0, like[1:]), scale(0.0, like_rotation)
             for p in range(starts[joint], starts[number + 1]):
                 point = np.uint64(p)
@@ -66,8 +81,11 @@ def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = Fal
                 if bends:
                     bent_open, bent_along = apart_at(line, place[0], frame)
                     opened += dt * bent_open
-                gap = gaps[point] + opened
-                gaps[point] = gap
+                if elastic:
+                    gap = contacts.lumped[point]
+                else:
+                    gap = gaps[point] + opened
+                    gaps[point] = gap
                 if not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
                 slide = sliding_at(slides, spin, place)
@@ -95,4 +113,4 @@ def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = Fal
         return lost
 
     return named(contact_forces, law, "bonded" if bonded else "", "strains" if strains else "",
-                 *["bends"] * bends)  # fmt: skip
+                 *["bends"] * bends, *["elastic"] * elastic)  # fmt: skip

@@ -12,6 +12,8 @@ import numpy as np
 
 from dem_cli.kernels.tiles.joint_tiles import NO_TILES, JointTiles
 
+NOTHING, NO_JOINTS, NO_FANS = np.zeros(0, np.int8), np.zeros(0, np.int64), np.zeros(0)
+
 
 class FixedJoints(NamedTuple):
     """Joints as geometry of the start has them; a joint owns points starts[j]:starts[j + 1]."""
@@ -26,6 +28,9 @@ class FixedJoints(NamedTuple):
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
     tiles: JointTiles = NO_TILES  # of these joints, for laws that have a form for lanes
+    integrated: np.ndarray = NOTHING  # this and the next two as MovingJoints has them
+    after: np.ndarray = NO_JOINTS
+    fans: np.ndarray = NO_FANS
 
     @property
     def owners(self) -> np.ndarray:

@@ -21,6 +21,7 @@ from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apa
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.planar_geometry import apart, place_end, refresh_lengths, share_of
+from dem_cli.kernels.pressed_faces import INTEGRATED, line_gaps
 from dem_cli.kernels.vec import axpy, compose, load, scale, sliding
 
 
@@ -66,12 +67,14 @@ def make_profiled_forces(
     rigid: bool = False,
     strains: bool = False,
     bends: bool = False,
+    elastic: bool = False,
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers. places: instead of forces, the
     loop keeps gaps, frames, levers and points up to date, for detection and records. rigid, strains: as in
     planar_forces.py. bends: blocks have quadratic modes as well (kernels/deformation/quadratic.py).
+    elastic: as in planar_forces.py.
     """
     press, books = make_press(law, bonded), rigid and not bonded
 
@@ -152,6 +155,9 @@ def make_profiled_forces(
                 bending = line_apart(bodies.bending, bodies.turns, a, b, end_a, end_b, tb)
                 nothing = scale(0.0, like)
                 sums = (nothing, nothing, nothing)
+            whole = elastic and not wrong and joints.integrated[joint] == INTEGRATED
+            if whole:
+                ends = line_gaps(gap_low, gap_high)
             loaded = False
             for p in range(first, last + 1):
                 point = np.uint64(p)
@@ -180,7 +186,9 @@ def make_profiled_forces(
                 before = gaps[point]
                 gaps[point] = gap
                 opened = gap - before
-                if meets and not bonded:
+                if whole:
+                    gap, faces = ends[0] if p == first else ends[1], False
+                elif meets and not bonded:
                     gap = meeting(gap, opened)
                 if rigid and faces:
                     gap -= closures[point]
@@ -222,7 +230,7 @@ def make_profiled_forces(
         return lost
 
     flags = {"bonded": bonded, "keeps": keeps, "places": places, "meets": meets, "rigid": rigid, "strains": strains}
-    flags |= {"bends": bends}
+    flags |= {"bends": bends, "elastic": elastic}
     return named(profiled_forces, law, *(name if on else "" for name, on in flags.items()))
 
 

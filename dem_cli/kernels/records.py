@@ -10,10 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.kernels.fixed_joints import FixedJoints
+from dem_cli.kernels.fixed_joints import NO_FANS, NO_JOINTS, NOTHING, FixedJoints
 
 NO_MODES = np.zeros((0, 0))
-NOTHING, NO_JOINTS = np.zeros(0, np.int8), np.zeros(0, np.int64)
 
 
 class Bodies(NamedTuple):
@@ -74,6 +73,10 @@ class MovingJoints(NamedTuple):
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
     held: np.ndarray = NO_JOINTS  # in space: points that touch, n; −1 − n where geometry was just measured, (n_joints,)
+    # Of elastic faces (kernels/pressed_faces.py), else empty:
+    integrated: np.ndarray = NOTHING  # 1: pressure is integrated over the face, (n_joints,) int8
+    after: np.ndarray = NO_JOINTS  # in space: the point that follows along the outline, (n_points,)
+    fans: np.ndarray = NO_FANS  # and the share of the area between both and their mean, (n_points,)
 
     @property
     def owners(self) -> np.ndarray:
@@ -81,8 +84,8 @@ class MovingJoints(NamedTuple):
         return np.repeat(np.arange(len(self.blocks)), np.diff(self.starts))
 
     def kept(self) -> MovingJoints:
-        """The same with a copy of what changes as blocks move in space: the stiffness of points."""
-        return self._replace(kn=self.kn.copy(), ks=self.ks.copy())
+        """The same with a copy of what changes as blocks move in space: the stiffness of points, and outlines."""
+        return self._replace(kn=self.kn.copy(), ks=self.ks.copy(), after=self.after.copy(), fans=self.fans.copy())
 
 
 # What both have in common: blocks, starts, owners, frames, levers, points, kn, ks, law.
@@ -231,6 +234,10 @@ class Contacts(NamedTuple):
         np.ndarray
     )  # elastic energy that went with areas that changed [J]: net (negative: made), sum of amounts, (2,)
     jolts: np.ndarray  # work of the present call by `contact_point.jolt` [J], (1,)
+    lumped: np.ndarray = (
+        NO_FANS  # gaps at which the points of elastic faces carry what they do [m], (n_points,); empty:
+    )
+    # there are none (kernels/pressed_faces.py)
 
 
 class Loads(NamedTuple):

@@ -17,6 +17,7 @@ from dem_cli.kernels.deformation.matrices import load_matrix, times
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.joint_plane import moment, sweep
+from dem_cli.kernels.pressed_faces import INTEGRATED, fan_out, share_pressure
 from dem_cli.kernels.records import FACES
 from dem_cli.kernels.renewal import MOST_LEFT, is_due, renew
 from dem_cli.kernels.separation import minus3, row3
@@ -87,12 +88,14 @@ def make_spatial_forces(
     remembers: int = 0,
     capped: bool = False,
     strains: bool = False,
+    elastic: bool = False,
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     meets: in time histories; geometry is held there while blocks hardly move. rigid: as in planar_forces.py.
     remembers: numbers of a point's memory that belong to the law. capped: joints may have caps. strains: blocks deform
-    (kernels/deformation); their faces stay plane, and geometry is measured in each step.
+    (kernels/deformation); their faces stay plane, and geometry is measured in each step. elastic: there are faces over
+    which pressure is integrated (kernels/pressed_faces.py).
     """
     assert remembers <= MOST_LEFT
     press, holds, books = make_press(law, bonded), meets and not strains, rigid and not bonded
@@ -119,6 +122,19 @@ def make_spatial_forces(
             force, torque_a, torque_b = scale(0.0, like), scale(0.0, like_rotation), scale(0.0, like_rotation)
             if strains:
                 gradient_a, gradient_b = load_matrix(stretchings, a, like), load_matrix(stretchings, b, like)
+            whole = elastic and joints.integrated[joint] == INTEGRATED
+            if whole:
+                if held:
+                    for p in range(starts[joint], starts[number + 1]):
+                        point = np.uint64(p)
+                        if stiffness[point] > 0.0:
+                            place = axpy(dt, va, load(places, point, 0, like))
+                            swept = axpy(-1.0, sweep(spin_a, axpy(-1.0, xa, place)), relative)
+                            moved = axpy(1.0, sweep(spin_b, axpy(-1.0, xb, place)), swept)
+                            gaps[point] += dt * dot(moved, load_frame(frames, point, like)[0])
+                else:
+                    fan_out(joints, number)
+                share_pressure(joints, contacts, number)
             n_loaded, n_touch = 0, 0
             for p in range(starts[joint], starts[number + 1]):
                 point = np.uint64(p)
@@ -135,13 +151,15 @@ def make_spatial_forces(
                     moved = axpy(1.0, axpy(-1.0, times(gradient_a, arm_a), times(gradient_b, arm_b)), moved)
                 if held:
                     opened = dt * dot(moved, frame[0])
-                    gap = gaps[point] + opened
+                    gap = gaps[point] if whole else gaps[point] + opened
                     gaps[point] = gap
                 else:
                     opened, gap = geometry.opened[point], gaps[point]
-                if meets and not bonded:
+                if whole:
+                    gap = contacts.lumped[point]
+                elif meets and not bonded:
                     gap = meeting(gap, opened)
-                if rigid:
+                if rigid and not whole:
                     gap -= closures[point]
                 if not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
@@ -149,7 +167,7 @@ def make_spatial_forces(
                 slide = (dt * dot(moved, frame[1]), dt * dot(moved, frame[2]))
                 before = normals[point]
                 pressed, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
-                if books:
+                if books and not whole:
                     jolts += jolt(gap, opened, before, pressed)
                 n_touch += 1 if pressed != 0.0 else 0
                 lost += work
@@ -168,7 +186,7 @@ def make_spatial_forces(
         return lost
 
     flags = {"bonded": bonded, "meets": meets, "rigid": rigid, "capped": capped}
-    flags |= {"strains": strains}
+    flags |= {"strains": strains, "elastic": elastic}
     return named(spatial_forces, law, *(name if on else "" for name, on in flags.items()), str(remembers))
 
 
