@@ -11,14 +11,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import make_press, push_apart
+from dem_cli.kernels.contact_point import make_press, push_apart, swing
 from dem_cli.kernels.deformation.joint_spread import add_leverage, add_spread_dyads, no_leverage, spread_at, spread_of
 from dem_cli.kernels.deformation.matrices import load_matrix, times
 from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import add_moment_at, moment, opening_at, seen_from, seen_outside, sliding_at, sweep
-from dem_cli.kernels.pressed_faces import share_pressure
+from dem_cli.kernels.pressed_faces import INTEGRATED, share_pressure
 from dem_cli.kernels.vec import axpy, components, compose, load, load_frame, scale
 
 
@@ -70,6 +70,7 @@ def make_contact_forces(
                         opened += dt * apart_at(line, place[0], frame)[0]
                     gaps[point] += opened
                 share_pressure(joints, contacts, number)
+            whole = elastic and joints.integrated[joint] == INTEGRATED
             push, rub, twist = 0.0, scale(0.0, like[1:]), scale(0.0, like_rotation)
             for p in range(starts[joint], starts[number + 1]):
                 point = np.uint64(p)
@@ -93,7 +94,10 @@ def make_contact_forces(
                     slide = axpy(1.0, spread_along, slide)
                 if bends:
                     slide = (slide[0] + dt * bent_along,)
+                pressed = contacts.normal[point]
                 normal, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
+                if whole:
+                    contacts.jolts[0] += swing(gaps[point] - opened, gaps[point], pressed, normal)
                 lost += work
                 push += normal
                 rub = axpy(1.0, shear, rub)

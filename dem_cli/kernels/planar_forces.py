@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart
+from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart, swing
 from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
@@ -69,6 +69,7 @@ def make_planar_forces(
                 gap_low = max(gap_low, 0.0)
                 gap_high = max(gap_high, 0.0)
             true_low, true_high = gap_low, gap_high
+            was_low, was_high = gaps[first], gaps[second]
             opened_low, opened_high = gap_low - gaps[first], gap_high - gaps[second]
             gaps[first] = gap_low
             gaps[second] = gap_high
@@ -103,7 +104,9 @@ def make_planar_forces(
                     slide = axpy(dt, spread_between(frame, gradient_a, gradient_b, arm_a, arm_b), slide)
                 pressed = normals[first]
                 normal, shear, work = press(gap_low, opened_low, slide, joints, contacts, joint, first)
-                if books and not wrong and not whole:
+                if books and whole:
+                    jolts += swing(was_low, gaps[first], pressed, normal)
+                elif books and not wrong:
                     jolts += jolt(gap_low, opened_low, pressed, normal)
                 friction_work += work
                 force, torque_a, torque_b = add_force(
@@ -123,7 +126,9 @@ def make_planar_forces(
                     slide = axpy(dt, spread_between(frame, gradient_a, gradient_b, arm_a, arm_b), slide)
                 pressed = normals[second]
                 normal, shear, work = press(gap_high, opened_high, slide, joints, contacts, joint, second)
-                if books and not wrong and not whole:
+                if books and whole:
+                    jolts += swing(was_high, gaps[second], pressed, normal)
+                elif books and not wrong:
                     jolts += jolt(gap_high, opened_high, pressed, normal)
                 friction_work += work
                 force, torque_a, torque_b = add_force(

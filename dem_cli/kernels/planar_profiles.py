@@ -14,7 +14,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart
+from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart, swing
 from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
 from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
@@ -211,7 +211,9 @@ def make_profiled_forces(
                     slide = (slide[0] + dt * apart_at(bending, way, frame)[1],)
                 pressed = normals[point]
                 normal, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
-                if books and faces:
+                if books and whole:
+                    jolts += swing(before, gaps[point], pressed, normal)
+                elif books and faces:
                     jolts += jolt(gap, opened, pressed, normal)
                 lost += work
                 force, torque_a, torque_b = add_force(

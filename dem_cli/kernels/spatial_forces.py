@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import jolt, make_press, meeting, push_apart
+from dem_cli.kernels.contact_point import jolt, make_press, meeting, push_apart, swing
 from dem_cli.kernels.deformation.matrices import load_matrix, times
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
@@ -167,7 +167,9 @@ def make_spatial_forces(
                 slide = (dt * dot(moved, frame[1]), dt * dot(moved, frame[2]))
                 before = normals[point]
                 pressed, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
-                if books and not whole:
+                if books and whole:
+                    jolts += swing(gaps[point] - opened, gaps[point], before, pressed)
+                elif books:
                     jolts += jolt(gap, opened, before, pressed)
                 n_touch += 1 if pressed != 0.0 else 0
                 lost += work
