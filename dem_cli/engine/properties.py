@@ -87,7 +87,7 @@ def _law(table: StiffJoint) -> Law:
 
 
 def _integrates(table: StiffJoint) -> bool:
-    """Whether the pressure on an elastic joint is integrated: it is plane, without tension, and no points are asked for."""
+    """Whether the pressure on an elastic joint is integrated: a plane one, without tension or points of its own."""
     return table.points is None and table.profile is None and not _law(table).bonded
 
 
