@@ -156,8 +156,9 @@ def make_profiled_forces(
                 nothing = scale(0.0, like)
                 sums = (nothing, nothing, nothing)
             whole = elastic and not wrong and joints.integrated[joint] == INTEGRATED
+            end_low, end_high = gap_low, gap_high
             if whole:
-                ends = line_gaps(gap_low, gap_high)
+                end_low, end_high = line_gaps(gap_low, gap_high)
             loaded = False
             for p in range(first, last + 1):
                 point = np.uint64(p)
@@ -187,7 +188,7 @@ def make_profiled_forces(
                 gaps[point] = gap
                 opened = gap - before
                 if whole:
-                    gap, faces = ends[0] if p == first else ends[1], False
+                    gap, faces = end_low if p == first else end_high, False
                 elif meets and not bonded:
                     gap = meeting(gap, opened)
                 if rigid and faces:
