@@ -142,7 +142,7 @@ def _check_tiles(sim: Simulation, joints: FixedJoints) -> None:
     _require(0 < threads <= _MOST_THREADS, "tiles")
     made = NO_TILES
     if sim.tiled:
-        made = tiled(joints.blocks, joints.starts, model.n_blocks, model.dimension, sim.law.n_of_lanes, threads)
+        made = tiled(joints.blocks, joints.starts, model.n_blocks, model.dimension, sim.n_in_lanes, threads)
     layout = made._fields.index("ends")  # behind it is room, of which nothing is read before it is written
     _same(made[:layout], tiles[:layout])
     for name, room in made._asdict().items():

@@ -74,7 +74,9 @@ def compiled_advance(
     start asks for; elastic: there are faces over which pressure is integrated (kernels/pressed_faces.py).
     """
     if tiled and law.of_lanes is not None:
-        return make_tiled_advance(make_tiled_forces(law.of_lanes, law.n_of_lanes), _pull(links, False))
+        return make_tiled_advance(
+            make_tiled_forces(law.of_lanes, law.n_of_lanes + elastic, elastic), _pull(links, False)
+        )
     if order > RIGID:
         return _strained_advance(kinematics, law, profiled, dimension, order == QUADRATIC, elastic)
     if kinematics == "fixed":

@@ -156,7 +156,7 @@ class Simulation:
         detection = self.settings.detection
         self.tiled = self._in_tiles()
         if self.tiled:
-            self.tracking.tile(self.law.n_of_lanes, self.threads)
+            self.tracking.tile(self.n_in_lanes, self.threads)
         self.longest = max(detection.shortest_call, detection.longest_call // max(1, len(self.joints.kn)))
         self.bodies.travel[:] = 0.0
         self._masses.clear()
@@ -166,7 +166,7 @@ class Simulation:
         """Whether joints are worked on many at once; few are not worth another kernel."""
         if self.kinematics != "fixed" or self.model.n_modes or self.law.of_lanes is None:
             return False
-        if self.integrates:
+        if self.integrates and self.model.dimension > 2:  # outlines have no form for lanes
             return False
         return len(self.joints.kn) >= self.settings.detection.tiled_from
 
@@ -265,7 +265,7 @@ class Simulation:
     def _step(self, n_steps: int, mode: int) -> int:
         """A call of the compiled loop: how many steps it did before joints had to be looked for."""
         threads = self.threads if n_steps > 0 and threads_may_share() else 1
-        members = self.tracking.assemble(self.law.n_of_lanes, threads) if self.tiled else 1
+        members = self.tracking.assemble(self.n_in_lanes, threads) if self.tiled else 1
         scene = (
             self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links, self.loads, self.control,
             self.ledger, self.like, self.like_rotation,
@@ -288,6 +288,11 @@ class Simulation:
     def order_within_blocks(self) -> int:
         """Order of the polynomials that displacements within blocks are, as engine/loops.py has them."""
         return QUADRATIC if len(self.model.mode_shapes) else LINEAR if self.model.n_modes else RIGID
+
+    @property
+    def n_in_lanes(self) -> int:
+        """Numbers that tiles keep of each joint: those that the law reads there, and whether its face is elastic."""
+        return self.law.n_of_lanes + self.integrates
 
     @property
     def integrates(self) -> bool:

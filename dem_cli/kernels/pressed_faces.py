@@ -20,17 +20,19 @@ NOT_INTEGRATED, INTEGRATED = 0, 1  # of Joints.integrated
 def line_gaps(low, high):
     """Gaps at which springs at both ends of a line, each with half its stiffness, carry what its pressure does [m].
 
-    low, high: gaps at the ends [m]; both forms meet where one of them is zero.
+    low, high: gaps at the ends [m]. Without branches, for many lines at once.
     """
-    if low >= 0.0 and high >= 0.0:
-        return low, high
-    if low <= 0.0 and high <= 0.0:
-        return (2.0 * low + high) / 3.0, (low + 2.0 * high) / 3.0
-    if low < 0.0:
-        closed = low / (low - high)
-        return low * closed * (1.0 - closed / 3.0), low * closed * closed / 3.0
-    closed = high / (high - low)
-    return high * closed * closed / 3.0, high * closed * (1.0 - closed / 3.0)
+    on_low, on_high = low < 0.0, high < 0.0
+    apart = low - high
+    apart = 1.0 if apart == 0.0 else apart
+    deep = low if on_low else high
+    closed = deep / (apart if on_low else -apart)  # share of the line, from the end that is closed
+    near, far = deep * closed * (1.0 - closed / 3.0), deep * closed * closed / 3.0
+    part_low, part_high = near if on_low else far, far if on_low else near
+    both, none = on_low & on_high, not (on_low | on_high)
+    at_low = (2.0 * low + high) / 3.0 if both else low if none else part_low
+    at_high = (low + 2.0 * high) / 3.0 if both else high if none else part_high
+    return at_low, at_high
 
 
 @always_inline
