@@ -143,16 +143,17 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
                 joint = tiles.joints[np.uint64(t) * ROW + lane]
                 if joint < 0:
                     continue
-                whole = elastic and joints.integrated[joint] == INTEGRATED
-                if whole:
-                    now = np.uint64(tiles.slots[t]) * of_slot + lane
-                    lumps = line_gaps(state[now], state[now + of_slot])
+                low, high, whole = 0.0, 0.0, False
+                if elastic:
+                    now, whole = np.uint64(tiles.slots[t]) * of_slot + lane, joints.integrated[joint] == INTEGRATED
+                    if whole:
+                        low, high = line_gaps(state[now], state[now + of_slot])
                 for p in range(joints.starts[joint + 1] - joints.starts[joint]):
                     now, point = np.uint64(tiles.slots[t] + p) * of_slot + lane, joints.starts[joint] + p
                     gap = state[now]
                     contacts.gaps[point] = gap
                     if whole:
-                        gap = lumps[0] if p == 0 else lumps[1]
+                        gap = low if p == 0 else high
                     contacts.normal[point] = -joints.kn[point] * gap if gap < 0.0 else 0.0
                     for k in range(d - 1):
                         contacts.shear[point, k] = state[now + np.uint64(1 + k) * ROW]
