@@ -1,7 +1,7 @@
 """Tangent stiffness of joints along their normals: springs of points, and elastic faces that are closed in part.
 
-Of a face whose pressure is integrated (kernels/pressed_faces.py), K = ∫ kn N Nᵀ dA over its closed part, with the same
-N: lines in closed form, outlines by their fans of triangles, each cut where its gap is zero.
+Of a face whose pressure is integrated (kernels/deformation/pressed_faces.py), K = ∫ kn N Nᵀ dA over its closed part,
+with the same N: lines in closed form, outlines by their fans of triangles, each cut where its gap is zero.
 """
 
 from __future__ import annotations
@@ -9,8 +9,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_array
 
-from dem_cli.kernels.pressed_faces import INTEGRATED
-from dem_cli.kernels.records import Joints
+from dem_cli.kernels.records import INTEGRATED, Joints
 
 MASS = (np.ones((3, 3)) + np.eye(3)) / 12.0  # ∫ N Nᵀ dA over the area of a triangle
 LEAST = 1e-12  # of the largest pivot: what is less is none

@@ -18,7 +18,7 @@ from dem_cli.geometry.outlines import away_from, furthest
 from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.rotation import matrices
 from dem_cli.geometry.solids import face_areas
-from dem_cli.kernels.pressed_faces import fan_out_all
+from dem_cli.kernels.deformation.pressed_faces import fan_out_all
 from dem_cli.kernels.records import (
     FACES,
     BlockShapes,

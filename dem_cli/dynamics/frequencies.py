@@ -26,7 +26,7 @@ from dem_cli.engine.dynamic_settings import FrequencySettings
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.errors import SolverError
 from dem_cli.geometry.rotation import matrices
-from dem_cli.kernels.pressed_faces import INTEGRATED
+from dem_cli.kernels.records import INTEGRATED
 from dem_cli.links.matrices import elongations
 from dem_cli.links.matrices import geometric as geometric_of_links
 from dem_cli.model.mode_masses import mass_matrices

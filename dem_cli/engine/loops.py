@@ -71,7 +71,7 @@ def compiled_advance(
 
     links: kinds of links that the scene has (links/registry.py); order: of the displacements within blocks, RIGID,
     LINEAR or QUADRATIC, which no link knows; tiled: joints are in tiles (`FixedJoints.tiles`), which geometry of the
-    start asks for; elastic: there are faces over which pressure is integrated (kernels/pressed_faces.py).
+    start asks for; elastic: there are faces over which pressure is integrated (kernels/deformation/pressed_faces.py).
     """
     if tiled and law.of_lanes is not None:
         return make_tiled_advance(

@@ -25,8 +25,7 @@ from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.fixed_joints import FixedJoints
 from dem_cli.kernels.jit import CompiledKernel, threads_may_share
-from dem_cli.kernels.pressed_faces import INTEGRATED
-from dem_cli.kernels.records import Bodies, Contacts, Joints
+from dem_cli.kernels.records import INTEGRATED, Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.links.link import Springs
 from dem_cli.links.matrices import elastic_energy_of_links, joined
@@ -450,7 +449,7 @@ class Simulation:
         return 0.5 * float(normal + shear + inside) + elastic_energy_of_links(self.links)
 
     def _pressed_energy(self, kn: np.ndarray) -> float:
-        """Twice that in normal springs where pressure is integrated over some faces (kernels/pressed_faces.py) [J]."""
+        """Twice that along normals where the pressure on some faces is integrated (deformation/pressed_faces.py) [J]."""
         contacts, joints = self.contacts, self.joints
         whole = joints.integrated[joints.owners] == INTEGRATED
         return float(np.where(whole, -contacts.normal * contacts.gaps, contacts.normal**2 / kn).sum())

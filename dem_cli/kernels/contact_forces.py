@@ -14,11 +14,12 @@ import numpy as np
 from dem_cli.kernels.contact_point import make_press, push_apart, swing
 from dem_cli.kernels.deformation.joint_spread import add_leverage, add_spread_dyads, no_leverage, spread_at, spread_of
 from dem_cli.kernels.deformation.matrices import load_matrix, times
+from dem_cli.kernels.deformation.pressed_faces import share_pressure
 from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import add_moment_at, moment, opening_at, seen_from, seen_outside, sliding_at, sweep
-from dem_cli.kernels.pressed_faces import INTEGRATED, share_pressure
+from dem_cli.kernels.records import INTEGRATED
 from dem_cli.kernels.vec import axpy, components, compose, load, load_frame, scale
 
 
@@ -28,7 +29,7 @@ def make_contact_forces(
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     strains: blocks deform (kernels/deformation); bends: in quadratic modes as well, 2D;
-    elastic: there are faces over which pressure is integrated (kernels/pressed_faces.py).
+    elastic: there are faces over which pressure is integrated (kernels/deformation/pressed_faces.py).
     """
     press = make_press(law, bonded)
 

@@ -40,7 +40,7 @@ def swing(before, gap, pressed, normal):
     """Work that a step takes of a point of an elastic face beyond what its pressure stores [J]: see `jolt`.
 
     before, gap: its gaps before and after the step [m]; pressed, normal: its forces [N]. Work is the mean of both
-    forces × the way between; summed over the face ½ Σ F (−g) is stored (kernels/pressed_faces.py).
+    forces × the way between; summed over the face ½ Σ F (−g) is stored (kernels/deformation/pressed_faces.py).
     """
     return 0.5 * (normal * before - pressed * gap)
 

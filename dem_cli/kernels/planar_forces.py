@@ -13,10 +13,11 @@ import numpy as np
 from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart, swing
 from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
+from dem_cli.kernels.deformation.pressed_faces import line_gaps
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.planar_geometry import apart, overlap_of, place_end, refresh_lengths
-from dem_cli.kernels.pressed_faces import INTEGRATED, line_gaps
+from dem_cli.kernels.records import INTEGRATED
 from dem_cli.kernels.vec import axpy, compose, load, scale, sliding
 
 
@@ -35,7 +36,7 @@ def make_planar_forces(
     meets: points close and open without a loss of energy (`meeting`), in time histories.
     rigid: closure that was taken back (engine/rigid_joints.py) presses without an overlap, jolts are booked: statics.
     strains: blocks deform (kernels/deformation); their edges stay straight. elastic: there are joints over which
-    pressure is integrated (kernels/pressed_faces.py).
+    pressure is integrated (kernels/deformation/pressed_faces.py).
     """
     press, books = make_press(law, bonded), rigid and not bonded
 

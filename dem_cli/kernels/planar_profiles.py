@@ -17,11 +17,12 @@ import numpy as np
 from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart, swing
 from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
+from dem_cli.kernels.deformation.pressed_faces import line_gaps
 from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.planar_geometry import apart, place_end, refresh_lengths, share_of
-from dem_cli.kernels.pressed_faces import INTEGRATED, line_gaps
+from dem_cli.kernels.records import INTEGRATED
 from dem_cli.kernels.vec import axpy, compose, load, scale, sliding
 
 

@@ -73,7 +73,7 @@ class MovingJoints(NamedTuple):
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
     held: np.ndarray = NO_JOINTS  # in space: points that touch, n; −1 − n where geometry was just measured, (n_joints,)
-    # Of elastic faces (kernels/pressed_faces.py), else empty:
+    # Of elastic faces (kernels/deformation/pressed_faces.py), else empty:
     integrated: np.ndarray = NOTHING  # 1: pressure is integrated over the face, (n_joints,) int8
     after: np.ndarray = NO_JOINTS  # in space: the point that follows along the outline, (n_points,)
     fans: np.ndarray = NO_FANS  # and the share of the area between both and their mean, (n_points,)
@@ -237,7 +237,7 @@ class Contacts(NamedTuple):
     lumped: np.ndarray = (
         NO_FANS  # gaps at which the points of elastic faces carry what they do [m], (n_points,); empty:
     )
-    # there are none (kernels/pressed_faces.py)
+    # there are none (kernels/deformation/pressed_faces.py)
 
 
 class Loads(NamedTuple):
@@ -315,6 +315,8 @@ class Watch(NamedTuple):
     samples: np.ndarray  # out: of the steps 0, every, 2 every ... of a stretch, (n_samples, n_watched, 3, n_dof)
     links: np.ndarray = NO_LINKS  # out: state of all links at these steps (links/link.py), (n_samples, n_links, 3)
 
+
+NOT_INTEGRATED, INTEGRATED = 0, 1  # of Joints.integrated
 
 # Slots of the vector `ledger`: sums over steps [J].
 EXTERNAL, CONTACT, DAMPING, FRICTION, SUPPORT, DASHPOT, MASS, MAXWELL = 0, 1, 2, 3, 4, 5, 6, 7

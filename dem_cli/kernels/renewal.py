@@ -10,9 +10,9 @@ import math
 
 import numpy as np
 
+from dem_cli.kernels.deformation.pressed_faces import fan_out, share_pressure
 from dem_cli.kernels.jit import always_inline, kernel
-from dem_cli.kernels.pressed_faces import INTEGRATED, fan_out, share_pressure
-from dem_cli.kernels.records import CROSSING, EDGES, FACES, FIXED_TO_B
+from dem_cli.kernels.records import CROSSING, EDGES, FACES, FIXED_TO_B, INTEGRATED
 from dem_cli.kernels.separation import minus3, row3
 from dem_cli.kernels.spatial_features import NONE, carried3, feature_of, frame_of, on_cap, tangents3, turned_back3
 from dem_cli.kernels.spatial_points import KN, KS, MOVED, SIZE, in_faces, of_edges, on_rim

@@ -14,11 +14,11 @@ import numpy as np
 
 from dem_cli.kernels.contact_point import jolt, make_press, meeting, push_apart, swing
 from dem_cli.kernels.deformation.matrices import load_matrix, times
+from dem_cli.kernels.deformation.pressed_faces import fan_out, share_pressure
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.joint_plane import moment, sweep
-from dem_cli.kernels.pressed_faces import INTEGRATED, fan_out, share_pressure
-from dem_cli.kernels.records import FACES
+from dem_cli.kernels.records import FACES, INTEGRATED
 from dem_cli.kernels.renewal import MOST_LEFT, is_due, renew
 from dem_cli.kernels.separation import minus3, row3
 from dem_cli.kernels.spatial_features import feature_of, frame_of, on_cap, tangents3
@@ -95,7 +95,7 @@ def make_spatial_forces(
     meets: in time histories; geometry is held there while blocks hardly move. rigid: as in planar_forces.py.
     remembers: numbers of a point's memory that belong to the law. capped: joints may have caps. strains: blocks deform
     (kernels/deformation); their faces stay plane, and geometry is measured in each step. elastic: there are faces over
-    which pressure is integrated (kernels/pressed_faces.py).
+    which pressure is integrated (kernels/deformation/pressed_faces.py).
     """
     assert remembers <= MOST_LEFT
     press, holds, books = make_press(law, bonded), meets and not strains, rigid and not bonded

@@ -13,9 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.kernels.contact_point import friction_work, plastic_slide
+from dem_cli.kernels.deformation.pressed_faces import line_gaps
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import add_moment_at, moment, opening_at, seen_from, seen_outside, sliding_at, sweep
-from dem_cli.kernels.pressed_faces import INTEGRATED, line_gaps
+from dem_cli.kernels.records import INTEGRATED
 from dem_cli.kernels.tiles.joint_tiles import TILES_AHEAD, TILES_OF_CHUNK
 from dem_cli.kernels.tiles.lanes import LANES, ROW, lowest_bit, put, take, take_frame
 from dem_cli.kernels.vec import axpy, components, compose, load, norm, scale, store
@@ -88,7 +89,7 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
     """Tiles for one law in its form for lanes (laws/law.py).
 
     n_numbers: numbers of a joint that the tiles keep: parameters that the law reads; elastic: in the plane, and last
-    whether the pressure is integrated over the line (kernels/pressed_faces.py).
+    whether the pressure is integrated over the line (kernels/deformation/pressed_faces.py).
     """
     of_the_law = n_numbers - 1 if elastic else n_numbers
 

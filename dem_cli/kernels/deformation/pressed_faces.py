@@ -11,9 +11,8 @@ the pressure is homogeneous in the gaps.
 from __future__ import annotations
 
 from dem_cli.kernels.jit import always_inline, inline, kernel
+from dem_cli.kernels.records import INTEGRATED, NOT_INTEGRATED
 from dem_cli.kernels.vec import axpy, dot, load, scale
-
-NOT_INTEGRATED, INTEGRATED = 0, 1  # of Joints.integrated
 
 
 @always_inline
