@@ -25,7 +25,7 @@ _APART = 1.0  # s: pressed again within it, while the first KeyboardInterrupt un
 
 @dataclass
 class _Noted:
-    """What is known of an interrupt in this process."""
+    """State of interrupts in this process: whether a signal came, and who has heard of it."""
 
     depth: int = 0  # of `Interrupts` around this moment
     asked: bool = False  # a signal came

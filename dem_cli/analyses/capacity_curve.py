@@ -11,18 +11,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.analyses import curve_answers
+from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
 from dem_cli.analyses.curve_tracing import CurveTracing
-from dem_cli.analyses.pushover import INTERRUPTED, answer, limit_analysis
+from dem_cli.analyses.pushover import INTERRUPTED, answer, buckling
+from dem_cli.dynamics.stability import standing
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import FALLS, Observer
+from dem_cli.output.record import Observer
 from dem_cli.statics import softer_joints
 from dem_cli.statics.agreement import doubts, load_range, percent
 from dem_cli.statics.compliance import check_moves, compliance
-from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_bracket import OK, FailureLoad, SearchRange
 from dem_cli.statics.failure_load import LoadSearch
 from dem_cli.statics.mechanism import describe
@@ -43,11 +44,11 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     search, found = FailureLoad(), dict[str, Any]()
     track, resolution = job.track(sim), case.analysis.resolution
     try:
-        if settle(sim, track, job.budget).state == "equilibrium":
+        if (status := standing(sim, track, job.budget)) == OK:
             track.flush()
             _curve_and_peak(job, track, search, found)
         else:
-            search.status = FALLS
+            search.status = status
             track.flush()
             found["joint_state"] = joint_state(sim, END)
     except SolverError as error:
@@ -61,9 +62,10 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
             found |= softer_joints.checked(job, sim, search, resolution)
         except KeyboardInterrupt:
             search.status = INTERRUPTED
-    if search.limits is not None and search.status != INTERRUPTED and case.analysis.limit:
-        found["limit_analysis"] = limit_analysis(job, search)
-    return job.outcome([sim], answer(search, sim, resolution) | found)
+    if search.status != INTERRUPTED:
+        found |= beside(job, search, sim, StartBound(job))
+    said = answer(search, sim, resolution) | found
+    return job.outcome([sim], said | {"status": status_beside(said["status"], found)})
 
 
 def _curve_and_peak(job: Job, track: Track, search: FailureLoad, found: dict[str, Any]) -> None:
@@ -88,7 +90,7 @@ def _curve_and_peak(job: Job, track: Track, search: FailureLoad, found: dict[str
         assert curve.at_peak is not None
         start, search.start = CurveStart(peak, curve.at_peak), {"kind": CURVE, "load": peak}
     wanted = SearchRange(analysis.resolution, analysis.max_load)
-    LoadSearch(sim, wanted, job.budget, job.track(sim), search).run(start)
+    LoadSearch(sim, wanted, job.budget, job.track(sim), search, buckling(job)).run(start)
     if missed := _missed(search, peak, analysis.resolution):
         job.warnings += missed
         found |= {"curve_off_the_load": True, "peak_of_curve": peak}

@@ -54,12 +54,25 @@ def automatic(job: Job) -> bool:
     return any(joint.kn == "auto" for joint in job.case.joints.values())
 
 
+def shaken_masses(sim: Simulation, gravity: float) -> np.ndarray:
+    """Masses of the free blocks with those of dead loads that have inertia, by their share of the live load [kg].
+
+    For pattern = "mass" alone, where the live load is the weight of all masses along a direction.
+    """
+    masses, live = sim.model.masses[sim.free], sim.model.live_loads[sim.free, : sim.model.dimension]
+    along = live.sum(axis=0)
+    if not along.any() or gravity == 0.0:
+        return masses
+    more = product(live, along / np.sqrt((along**2).sum())) / gravity - masses
+    return masses + more if more.max() > 1e-9 * masses.max() else masses
+
+
 class CurveCheck:
     """Check of a capacity curve against a spectrum: numbers for the summary, and what is to be said of it."""
 
     def __init__(self, job: Job, sim: Simulation, table: CodeCheck) -> None:
         self.job, self.sim, self.table = job, sim, table
-        self.masses = sim.model.masses[sim.free]
+        self.masses = shaken_masses(sim, job.case.gravity)
 
     def run(self, found: dict[str, Any], curve: CapacityCurve, states: tuple[SavedState, SavedState]) -> dict[str, Any]:
         """The key `check` of the summary; nothing, with a warning, where there is no answer.
@@ -118,7 +131,7 @@ class CurveCheck:
         if force > LEAST_FORCE * float(weights.sum()):
             self.job.warnings.append(
                 f"the check leaves out the masses of dead loads, {force:.3g} N beside {weights.sum():.3g} N of "
-                "weights: draw what they stand for as blocks"
+                "weights: inertia = true gives a load that is a weight its mass"
             )
 
     def _nothing(self, why: str) -> dict[str, Any]:

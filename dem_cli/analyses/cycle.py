@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.analyses.curve_tracing import followed
+from dem_cli.dynamics.stability import buckles, standing
 from dem_cli.engine import measures
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, joint_state
@@ -19,7 +20,7 @@ from dem_cli.output.record import FALLS, Observer
 from dem_cli.output.resume.stages import stage
 from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.displacement_control import DisplacementControl
-from dem_cli.statics.equilibrium import settle, settle_or_fail, unexpected
+from dem_cli.statics.equilibrium import settle_or_fail, unexpected
 from dem_cli.statics.hysteresis import loops, state_of
 
 if TYPE_CHECKING:
@@ -36,7 +37,8 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     track = job.track(sim)
     found: dict[str, Any] = {"status": FALLS, "failure_load": None, "turning_points": [], "loops": []}
     try:
-        if settle(sim, track, job.budget).state == "equilibrium":
+        found["status"] = standing(sim, track, job.budget)
+        if found["status"] == "ok":
             track.flush()
             path = LoadPath(job, track)
             try:
@@ -129,7 +131,7 @@ class ByLoad:
         sim = self.sim
         scale = self.elastic * max(abs(load) / sim.live_scale, self.job.case.analysis.step / sim.live_scale)
         verdict = settle_or_fail(sim, load / sim.live_scale, self.job.budget, scale, ahead=unexpected(sim))
-        return verdict.state == "equilibrium"
+        return verdict.state == "equilibrium" and buckles(sim, self.job.budget) is None
 
 
 class ByDisplacement:

@@ -268,7 +268,7 @@ def _of_property(sim: Simulation) -> bool:
 
 
 def _load(case: Case, model: Model) -> str:
-    """What the multiplier λ acts on."""
+    """Loads that the multiplier λ acts on, in words."""
     pattern = getattr(case.analysis, "pattern", None)
     if pattern is None:
         moved = f", {len(case.settlement)} support(s) moved" if case.settlement else ""

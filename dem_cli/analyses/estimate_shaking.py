@@ -10,6 +10,7 @@ from dem_cli.analyses.estimate_cost import cost_of_shaking
 from dem_cli.analyses.modes import touching_points
 from dem_cli.dynamics.frequencies import modes, system
 from dem_cli.dynamics.ground import GroundMotion
+from dem_cli.dynamics.history import duration_of
 from dem_cli.dynamics.time_step import TimeStep, time_step
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.record_search import records_of, runs_per_record
@@ -27,7 +28,7 @@ SOFTER = DEFAULT.rocking.softer
 def describe_shaking(case: Case, sim: DynamicSimulation, automatic: bool) -> list[tuple[str, str]]:
     """Lines of `dem check`; automatic: some joints have the stiffness that the program chose.
 
-    Raises CaseError where analysis.time_step is not stable.
+    Raises CaseError where analysis.time_step is not stable, or nothing says how long to look, as a run does.
     """
     analysis = case.analysis
     step = time_step(sim, analysis.margin, analysis.time_step, sim.damping.stiffening)
@@ -55,9 +56,7 @@ def _first(sim: DynamicSimulation) -> str:
 
 def _cost(case: Case, sim: DynamicSimulation, step: TimeStep, automatic: bool) -> list[tuple[str, str]]:
     analysis, ground = case.analysis, GroundMotion(motions_of(case), sim.model)
-    length = analysis.duration or ground.duration
-    if length <= 0.0:
-        return [("load", "how long is not said: no [motion] does, and analysis.duration is missing")]
+    length = duration_of(case, ground)
     checked = automatic and analysis.kind != "fragility"
     runs, said = _runs(case, checked)
     peak = "" if analysis.kind == "fragility" else f", {ground_words(motions_of(case))}"

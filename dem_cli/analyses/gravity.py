@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from dem_cli.dynamics.stability import buckles
 from dem_cli.engine import measures
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import FALLS, Observer
+from dem_cli.output.record import BUCKLED, FALLS, Observer
 from dem_cli.statics.equilibrium import settle
+from dem_cli.statics.failure_test import moved_far
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -21,12 +23,17 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     """Outcome of a gravity analysis; status "ok" means that it stands."""
     job = Job.start(case, model, observer, settings)
     sim = job.first_simulation()
-    track = job.track(sim)
+    track, start = job.track(sim), sim.places()
+    found: dict[str, Any] = {}
     try:
         status = "ok" if settle(sim, track, job.budget).state == "equilibrium" else FALLS
+        if status == "ok" and (block := buckles(sim, job.budget)) is not None:
+            status, found["buckling"] = BUCKLED, {"block": model.block_ids[block]}
+        if status == "ok" and (far := moved_far(sim, start)) is not None:
+            found["moved_far"] = {"block": model.block_ids[far[0]], "distance": far[1]}
     except SolverError as error:
         status = "not converged"
         job.warnings.append(str(error))
     track.flush()
-    found = {"status": status, "largest_displacement": measures.largest_displacement(sim)}
+    found |= {"status": status, "largest_displacement": measures.largest_displacement(sim)}
     return job.outcome([sim], found | {"joint_state": joint_state(sim, END)})

@@ -5,19 +5,20 @@ from __future__ import annotations
 from math import ceil, inf, log2
 from typing import TYPE_CHECKING, Any
 
+from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
+from dem_cli.dynamics.stability import buckles, standing
 from dem_cli.engine.automatic_stiffness import ratio_of
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
-from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.properties import law_of
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
-from dem_cli.errors import SolverError, UsageError
+from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import FALLS, Observer
+from dem_cli.output.record import BUCKLED, FALLS, Observer
 from dem_cli.statics import post_peak, softer_joints
-from dem_cli.statics.agreement import doubts, histories, load_range, percent, unique
+from dem_cli.statics.agreement import at_the_bound, doubts, histories, load_range, percent, unique
 from dem_cli.statics.compliance import compliance
-from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, SearchRange
 from dem_cli.statics.failure_load import LoadSearch
 from dem_cli.statics.mechanism import describe, moved_blocks
@@ -25,18 +26,20 @@ from dem_cli.statics.rigid_limits import RigidLimits
 from dem_cli.statics.warm_start import GRAVITY, find_start
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from dem_cli.case.schema import Case
     from dem_cli.engine.track import Track
-    from dem_cli.limit.analysis import LimitLoads
 
 INTERRUPTED = "interrupted"
-MOTION, IMPOSSIBLE = "motion", "limit analysis"  # what failure is proved by
+MOTION, IMPOSSIBLE, BUCKLING = "motion", "limit analysis", "buckling"  # what failure is proved by
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a pushover; status "not converged" where the budget of steps ends before the proofs."""
     job = Job.start(case, model, observer, settings)
-    search, sim = _search(job)
+    start = StartBound(job)
+    search, sim = _search(job, start)
     sims = [sim]
     found: dict[str, Any] = {"failure_mode": None, "displacement_at_failure": None}
     track = job.track(sim)
@@ -62,12 +65,13 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
         else:
             job.skipped.append("collapse: analysis.follow = 0")
             found["displacement_at_failure"] = search.peak_displacement
-    elif search.status != FALLS:
+    elif search.status not in (FALLS, BUCKLED):
         track.frame("loading")
         found["joint_state"] = joint_state(sim, END)
-    if search.limits is not None and search.status != INTERRUPTED and (case.analysis.limit or search.bound is not None):
-        found["limit_analysis"] = limit_analysis(job, search)
-    return job.outcome(sims, answer(search, sim, resolution) | found)
+    if search.status != INTERRUPTED:
+        found |= beside(job, search, sim, start)
+    said = answer(search, sim, resolution) | found
+    return job.outcome(sims, said | {"status": status_beside(said["status"], found)})
 
 
 def _mechanism(sim: Simulation, search: FailureLoad, track: Track) -> dict[str, Any]:
@@ -86,7 +90,7 @@ def _mechanism(sim: Simulation, search: FailureLoad, track: Track) -> dict[str, 
     return found | describe(sim, before)
 
 
-def _search(job: Job) -> tuple[FailureLoad, Simulation]:
+def _search(job: Job, start: StartBound) -> tuple[FailureLoad, Simulation]:
     """Gravity and the failure search, with geometry that moves where given joints are too soft to freeze it.
 
     That is decided before the search, by elastic displacements at the load that limit analysis allows at most; and
@@ -100,19 +104,19 @@ def _search(job: Job) -> tuple[FailureLoad, Simulation]:
         track = job.track(sim)
         moved = 0.0  # smallest edges
         try:
-            if settle(sim, track, job.budget).state == "equilibrium":
+            if (status := standing(sim, track, job.budget)) == OK:
                 search.limits = RigidLimits(job, sim)
                 moved = _expected_motion(job, sim, search.limits)
                 if not moved:
-                    start, search.start = find_start(job, sim, search.limits)
+                    near, search.start = find_start(job, sim, search.limits)
                     wanted = SearchRange(analysis.resolution, analysis.max_load, analysis.step)
-                    load_search = LoadSearch(sim, wanted, job.budget, track, search)
+                    load_search = LoadSearch(sim, wanted, job.budget, track, search, buckling(job))
                     load_search.on_stiff_joints = rigid / sim.live_scale if rigid else inf
-                    load_search.run(start)
+                    load_search.run(near)
                     _second_history(job, load_search)
                     moved = search.peak_displacement / sim.smallest if _may_move(job, sim) else 0.0
             else:
-                search.status = FALLS
+                search.status = status
         except SolverError as error:
             job.warnings.append(str(error))
             search.end_undecided(job.settings.load_search.widest)
@@ -126,16 +130,21 @@ def _search(job: Job) -> tuple[FailureLoad, Simulation]:
                 track.flush()  # else the rows of the collapse tell the whole way
             return search, sim
         job.skipped[:] = [f"fixed geometry: with the given kn blocks move {moved:.2g} smallest edges before failure"]
-        rigid, searched = (search.carried, True) if search.found else (_bound_of_the_start(job, search), False)
+        rigid, searched = (search.carried, True) if search.found else (_bound_of_the_start(search, start), False)
         job.warnings.clear()
         search, sim = FailureLoad(), job.simulation("large")
 
 
-def _bound_of_the_start(job: Job, search: FailureLoad) -> float | None:
+def buckling(job: Job) -> Callable[[Simulation], bool]:
+    """Whether a state at rest buckles, for searches."""
+    return lambda sim: buckles(sim, job.budget) is not None
+
+
+def _bound_of_the_start(search: FailureLoad, start: StartBound) -> float | None:
     """What rigid blocks carry at most, by limit analysis of the geometry of the start."""
     if search.bound is not None:
         return search.bound
-    loads = _of_the_start(job)
+    loads = start.loads
     return None if loads is None else loads.associated.upper
 
 
@@ -163,7 +172,7 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
     and these are its own.
     """
     search, resolution = load_search.answer, job.case.analysis.resolution
-    if not search.found or search.limits is None or unique(search, resolution) or search.limits.too_large:
+    if not search.found or search.limits is None or at_the_bound(search, resolution) or search.limits.too_large:
         return
     path = search.limits.path
     if path is None:
@@ -206,39 +215,6 @@ def _off_the_load(peak: post_peak.CurvePeak, search: FailureLoad, scale: float, 
     else:
         return []
     return [f"the collapse was followed {why}: only its shape counts"]
-
-
-def limit_analysis(job: Job, search: FailureLoad) -> dict[str, Any]:
-    """Failure loads of the same rigid blocks by limit analysis; warns where the failure load is above the bound."""
-    assert search.limits is not None
-    if job.case.analysis.limit:
-        _ = search.limits.path  # asked for
-    loads = search.limits.loads() or _of_the_start(job)
-    if loads is None:
-        return {}
-    bound = loads.associated.upper
-    if search.found and bound is not None and search.carried > (1.0 + job.settings.doubts.above) * bound:
-        job.warnings.append(
-            f"the failure load {search.carried:.5g} is above the associated limit load {bound:.5g}, "
-            "which rigid blocks cannot exceed: do not trust this run"
-        )
-    return {key: value for key, value in loads.summary().items() if not key.endswith("seconds")}
-
-
-def _of_the_start(job: Job) -> LimitLoads | None:
-    """Limit analysis of the geometry of the start, where that of the run moves; None, with a word, without any."""
-    from dem_cli.limit.analysis import limit_loads, require_scalable, taken_as_plane
-
-    properties, law = joint_properties(job.case, job.model, job.stiffness("fixed")), law_of(job.case)
-    if note := taken_as_plane(properties):
-        job.warnings.append(note)
-    try:
-        if job.case.analysis.pattern == "tilt":
-            require_scalable(job.model, properties, law)
-        return limit_loads(job.model, properties, law, settings=job.settings.limit)
-    except UsageError as error:
-        job.warnings.append(f"no limit analysis: {error}")
-        return None
 
 
 def _by_load(job: Job) -> bool:
@@ -291,7 +267,7 @@ def answer(search: FailureLoad, sim: Simulation, resolution: float) -> dict[str,
         "failure_load_bracket": [search.low, search.high],
         "load_range": load_range(search, resolution),
         "histories": [history.summary() for history in histories(search)],
-        "unique": unique(search, resolution) if search.bound is not None else None,
+        "unique": unique(search) if search.bound is not None else None,
         "onset_of_displacements": search.onset,
         "kinematics": sim.kinematics,
         "start": search.start,
@@ -303,7 +279,7 @@ def answer(search: FailureLoad, sim: Simulation, resolution: float) -> dict[str,
         answer["undecided_loads"] = search.undecided
     if search.failing is not None:
         answer["proof_of_failure"] = {
-            "by": IMPOSSIBLE if search.impossible else MOTION,
+            "by": IMPOSSIBLE if search.impossible else BUCKLING if search.failing.buckles else MOTION,
             "released_share_of_work": search.failing.released,
             "growth_when_time_doubles": None if search.impossible else search.failing.growth,
         }

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.arithmetic.products import product
+from dem_cli.dynamics.stability import buckles
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.job import Job, Outcome
@@ -17,7 +18,7 @@ from dem_cli.engine.track import Track
 from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.geometry.rotation import turned_as_one
 from dem_cli.model.model import Model
-from dem_cli.output.record import FALLS, Observer
+from dem_cli.output.record import BUCKLED, FALLS, Observer
 from dem_cli.output.resume.stages import stage
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.mechanism import describe
@@ -41,11 +42,14 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     try:
         job.clock.progress("gravity", 0.0, 0.0, None)
         status = "ok" if stand(sim, job.budget).state == "equilibrium" else FALLS
+        if status == "ok" and buckles(sim, job.budget) is not None:
+            status = BUCKLED
         track.write("gravity")
         track.frame("gravity")
         if status == "ok":
             movement = SupportMovement(case, model)
-            way = SettlementWay(sim, movement.at(1.0), movement.at if movement.curved else None)
+            path = movement.at if movement.curved else None
+            way = SettlementWay(sim, movement.at(1.0), path, lambda at_rest: buckles(at_rest, job.budget) is not None)
             status = _move(way, track, case.output.snapshots, job.budget)
             found |= measured_at_end(sim)
             if status == COLLAPSED:
@@ -57,7 +61,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
 
 
 def measured_at_end(sim: Simulation) -> dict[str, Any]:
-    """What is said of the structure as it is now."""
+    """State of the structure at this settlement, for the summary."""
     return {"largest_displacement": measures.largest_displacement(sim), "joint_state": joint_state(sim, END)}
 
 

@@ -11,29 +11,70 @@ from dem_cli.arithmetic.symmetric_factors import count_entries, factorise_symmet
 if TYPE_CHECKING:
     from scipy.sparse import sparray, spmatrix
 
+ITERATIONS = 12  # of an inverse iteration: a shape, not a number of many digits
+
+
+class SymmetricFactors:
+    """Factors L D Lᵀ of a sparse symmetric matrix, without pivoting.
+
+    Raises np.linalg.LinAlgError where a pivot is nothing.
+    """
+
+    def __init__(self, matrix: sparray | spmatrix) -> None:
+        from scipy.sparse import csc_array
+        from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+        whole = csc_array(matrix)
+        self.order, n = reverse_cuthill_mckee(whole.tocsr(), symmetric_mode=True).astype(np.int64), whole.shape[0]
+        ordered = csc_array(whole[self.order][:, self.order])
+        whole_matrix = ordered.indptr.astype(np.int64), ordered.indices.astype(np.int64), ordered.data
+        parents, counts, seen = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
+        count_entries(*whole_matrix[:2], parents, counts, seen)
+        begins = np.concatenate([[0], np.cumsum(counts)])
+        self.factors = (
+            parents, begins, counts, np.empty(begins[-1], np.int64), np.empty(begins[-1]), np.empty(n),
+        )  # fmt: skip
+        if factorise_symmetric(whole_matrix, self.factors, (seen, np.empty(n, np.int64), np.zeros(n))) >= 0:
+            raise np.linalg.LinAlgError("singular matrix")
+
+    @property
+    def negative(self) -> int:
+        """How many eigenvalues are negative: as many as pivots, by Sylvester's law of inertia."""
+        return int((self.factors[-1] < 0.0).sum())
+
+    def solved(self, right: np.ndarray) -> np.ndarray:
+        """x of A x = b, (n,)."""
+        found = np.empty(len(right))
+        x = right[self.order].astype(float)
+        solve_symmetric(self.factors, x)
+        found[self.order] = x
+        return found
+
 
 def solved_symmetric(matrix: sparray | spmatrix, right: np.ndarray) -> np.ndarray:
     """x of A x = b for a sparse symmetric A that is positive definite, (n,).
 
     Raises np.linalg.LinAlgError where a pivot is nothing.
     """
-    from scipy.sparse import csc_array
-    from scipy.sparse.csgraph import reverse_cuthill_mckee
+    return SymmetricFactors(matrix).solved(right)
 
-    whole = csc_array(matrix)
-    order, n = reverse_cuthill_mckee(whole.tocsr(), symmetric_mode=True).astype(np.int64), whole.shape[0]
-    ordered = csc_array(whole[order][:, order])
-    whole_matrix = ordered.indptr.astype(np.int64), ordered.indices.astype(np.int64), ordered.data
-    parents, counts, seen = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
-    count_entries(*whole_matrix[:2], parents, counts, seen)
-    begins = np.concatenate([[0], np.cumsum(counts)])
-    factors = (
-        parents, begins, counts, np.empty(begins[-1], np.int64), np.empty(begins[-1]), np.empty(n),
-    )  # fmt: skip
-    if factorise_symmetric(whole_matrix, factors, (seen, np.empty(n, np.int64), np.zeros(n))) >= 0:
-        raise np.linalg.LinAlgError("singular matrix")
-    found = np.empty(n)
-    x = right[order].astype(float)
-    solve_symmetric(factors, x)
-    found[order] = x
+
+def most_negative(matrix: sparray | spmatrix, least: float) -> np.ndarray | None:
+    """The vector of the lowest eigenvalue of a sparse symmetric matrix where that is below −least, (n,); else None.
+
+    The shift that makes the matrix positive definite is found by counting negative pivots; from there inverse
+    iteration comes to the lowest eigenvalue, from a start that is always the same.
+    """
+    from scipy.sparse import eye_array
+
+    one = eye_array(matrix.shape[0], format="csr")
+    if not SymmetricFactors(matrix + least * one).negative:
+        return None
+    shift = 2.0 * least
+    while (factors := SymmetricFactors(matrix + shift * one)).negative:
+        shift *= 2.0
+    found = np.random.default_rng(0).standard_normal(matrix.shape[0])
+    for _ in range(ITERATIONS):
+        found = factors.solved(found)
+        found /= np.sqrt((found * found).sum())
     return found

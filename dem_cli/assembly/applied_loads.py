@@ -38,7 +38,12 @@ def _need_surfaces(case: Case) -> bool:
 
 
 def _load(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath, table: Load) -> AppliedLoad:
-    """Forces on one block, shared by several, or on what lies under them."""
+    """Forces on one block, shared by several, or on what lies under them; with `inertia` as weights of masses."""
+    found = _forces(model, surfaces, path, table)
+    return found._replace(weights=-found.forces[:, -1]) if table.inertia else found
+
+
+def _forces(model: Model, surfaces: Surfaces | None, path: KeyPath, table: Load) -> AppliedLoad:
     chosen = model.chosen(table.selected, False)
     if table.falls or (table.at is not None and len(chosen) > 1):
         return falling_load(model, surfaces, path, table)._replace(follows=table.follows)

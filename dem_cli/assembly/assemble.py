@@ -20,7 +20,7 @@ from dem_cli.assembly.imposed_strains import with_imposed_strains
 from dem_cli.assembly.point_forces import AppliedLoad
 from dem_cli.assembly.restraints import restrained
 from dem_cli.assembly.selection import BlockNames, Selections
-from dem_cli.case.base import KeyProblem
+from dem_cli.case.base import NOTHING, KeyProblem
 from dem_cli.case.wording import show, unknown_name
 from dem_cli.errors import CaseError, CaseProblem, KeyPath, dotted
 from dem_cli.geometry.rotation import moments
@@ -28,7 +28,7 @@ from dem_cli.input_limits import MOST_BLOCKS
 from dem_cli.model.blocks import Block, corners_of
 from dem_cli.model.bodies import BodyArrays, bodies_of
 from dem_cli.model.following_loads import FollowingLoads
-from dem_cli.model.model import NO_PIECES, Model
+from dem_cli.model.model import NO_COURSES, NO_PIECES, Model
 from dem_cli.model.quadratic_modes import quadratic_loads, quadratic_modes
 from dem_cli.model.uniform_strain import mode_loads, mode_stiffness
 from dem_cli.structures.placement import aliases, place
@@ -130,6 +130,12 @@ def joint_table(case: Case) -> tuple[tuple[str, ...], np.ndarray]:
     return names, np.array(table, np.int64)
 
 
+def joints_in_heads(case: Case) -> np.ndarray:
+    """Which joint, by its number in the case, lies in the head joints of each; −1: nothing does, (n_named,) int64."""
+    numbers = {name: k for k, name in enumerate(case.joints)} | {NOTHING: -1}
+    return np.array([numbers[table.head or name] for name, table in case.joints.items()], np.int64)
+
+
 def _repeated_names(blocks: Sequence[Block]) -> list[CaseProblem]:
     first: dict[str, Block] = {}
     problems = []
@@ -186,6 +192,7 @@ def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Mo
         live_loads=np.zeros((n, n_dof)),
         aliases=tuple(names.items()),
         pieces=_pieces(case, blocks),
+        courses=_courses(case, blocks),
     )
     return _with_modes(case, model)
 
@@ -197,6 +204,18 @@ def _pieces(case: Case, blocks: Sequence[Block]) -> np.ndarray:
     joints = {name: k for k, name in enumerate(case.joints)}
     stones = {name: k for k, name in enumerate(dict.fromkeys(block.stone for block in blocks if block.crack))}
     return np.array([(stones[b.stone], joints[b.crack]) if b.crack else (-1, -1) for b in blocks], np.int64)
+
+
+def _courses(case: Case, blocks: Sequence[Block]) -> np.ndarray:
+    """As Model.courses; nothing where head joints are like others, or no block lies in a course."""
+    if all(joint.head is None for joint in case.joints.values()) or not any(block.course for block in blocks):
+        return NO_COURSES
+    laid = [(block.path, block.course) for block in blocks]
+    courses = {key: k for k, key in enumerate(dict.fromkeys(key for key in laid if key[1]))}
+    rows = {name: k for k, name in enumerate(dict.fromkeys(["", *(block.row for block in blocks)]))}
+    return np.array(
+        [(courses.get(key, -1), rows[block.row]) for key, block in zip(laid, blocks, strict=True)], np.int64
+    )
 
 
 def _with_modes(case: Case, model: Model) -> Model:

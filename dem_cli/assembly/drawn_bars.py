@@ -23,7 +23,7 @@ TOUCHES = 1e-9  # of the largest part: what a line has in a part is round-off
 
 
 class BarStretch(NamedTuple):
-    """What of a line lies in a block, from and to, along it [m]."""
+    """Stretch of a bar that lies in a block, from and to, along it [m]."""
 
     block: int
     begin: float
@@ -60,7 +60,7 @@ def drawn_bar(
 
 
 def _in_blocks(model: Model, start: np.ndarray, along: np.ndarray, length: float) -> list[BarStretch]:
-    """What of a line lies in each block, in the order in which it meets them."""
+    """Stretches of a bar in each block, in the order in which it meets them."""
     vertices, topology = undeformed(model), model.topology
     normals = shapes_of(vertices).normals(vertices, topology)
     ahead = ((vertices[topology.face_corners[topology.face_starts[:-1]]] - start) * normals).sum(axis=1)

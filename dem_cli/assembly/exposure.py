@@ -163,5 +163,5 @@ class Surfaces:
 
 
 def _pieces(whole: SurfacePiece, rest: Sequence[np.ndarray]) -> list[SurfacePiece]:
-    """What is left of a piece, without round-off."""
+    """Rest of a piece of a face after cuts; none where only round-off is left."""
     return [whole._replace(corners=one) for one in rest if surface_pieces.measure(one) > whole.least]

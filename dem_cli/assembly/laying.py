@@ -98,6 +98,6 @@ def _moves(model: Model, corners: np.ndarray, pairs: np.ndarray, movable: np.nda
 
 
 def _small(model: Model, later: np.ndarray, earlier: np.ndarray) -> np.ndarray:
-    """What counts as nothing between two parts [m], (n,)."""
+    """Distance between two parts that counts as none [m], (n,)."""
     sizes = model.parts.sizes
     return polygon.ROUND_OFF * np.minimum(sizes[later], sizes[earlier])

@@ -36,7 +36,6 @@ STIFFNESS_UNITS = {"N/mm3": 1e9, "GPa/m": 1e9, "MPa/m": 1e6, "kN/m3": 1e3}  # ot
 INSTEAD = {  # of a dead load that presses and does not push: what would
     "load": "what is a mass, such as a roof or a floor, is drawn as a block",
     "pressure": "what water or earth adds when it shakes is a pressure with kind = 'live'",
-    "fill": "inertia = true gives a fill its share",
 }
 
 
@@ -52,6 +51,7 @@ def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[Ap
         *odd_loads(case, model),
         *_loads_and_weight(case, model, loads),
         *_unused_joints(case),
+        *_no_heads(case, model),
         *_loose_cracks(case),
         *_loose_ends(case),
         *_unspanned(case),
@@ -105,8 +105,10 @@ def _loads_and_weight(case: Case, model: Model, loads: Sequence[AppliedLoad]) ->
     if (pattern == "mass" or case.analysis.kind in SHAKES) and dead_force > HEAVY * weight:
         pushes = "are no part of the live load" if pattern == "mass" else "have no inertia"
         message = f"dead loads of {dead_force:.3g} N beside blocks of {weight:.3g} N press, but {pushes}: "
-        of_fill = pressing[0].path[0] == "fill" and pattern != "mass"
-        yield CaseProblem(pressing[0].path, message + INSTEAD["load" if of_fill else str(pressing[0].path[0])])
+        key = str(pressing[0].path[0])
+        with_inertia = pattern == "mass" and key in ("load", "fill")
+        instead = f"inertia = true gives a {key} its share" if with_inertia else INSTEAD.get(key, INSTEAD["load"])
+        yield CaseProblem(pressing[0].path, message + instead)
     likely, forces = 1e3 * live_force > HEAVY * weight, [_size(load) for load in live if _size(load) > 0.0]
     if pattern == "live" and 0.0 < live_force < LIGHT * weight and likely and not all(map(_is_unit, forces)):
         message = f"live loads of {live_force:.3g} N in all beside a weight of {weight:.3g} N; did you mean kN?"
@@ -153,9 +155,20 @@ def _unused_joints(case: Case) -> Iterator[CaseProblem]:
     """Joints that lie between no two materials, nor in stones: most often an [[interface]] is missing."""
     names, by_material = joint_table(case)
     within = {table.cracks.joint for table in case.structure if table.cracks is not None}
+    within |= {table.head for table in case.joints.values() if table.head is not None}
     for k, name in enumerate(names):
         if not (by_material == k).any() and name not in within:
             yield CaseProblem(("joints", name), "lies between no blocks: no [[interface]] names it", at_key=True)
+
+
+def _no_heads(case: Case, model: Model) -> Iterator[CaseProblem]:
+    """Head joints of their own where no block lies in a course: they change nothing."""
+    for name, table in case.joints.items():
+        if table.head is not None and not len(model.courses):
+            message = (
+                f"{show(table.head)} changes nothing: no block lies in a course; generators of walls and the like lay"
+            )
+            yield CaseProblem(("joints", name, "head"), f"{message} courses, [[block]] does not")
 
 
 def _loose_cracks(case: Case) -> Iterator[CaseProblem]:
@@ -195,7 +208,7 @@ def _unspanned(case: Case) -> Iterator[CaseProblem]:
 
 
 def _unsaid(case: Case) -> Iterator[CaseProblem]:
-    """What structures take for granted and might be otherwise."""
+    """Notes on assumptions of structures that might be otherwise."""
     for i, table in enumerate(case.structure):
         for key, message in unsaid(table):
             yield CaseProblem(("structure", i, key), message)

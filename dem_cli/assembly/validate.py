@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.arithmetic import functions
-from dem_cli.assembly.assemble import joint_table
+from dem_cli.assembly.assemble import joint_table, joints_in_heads
 from dem_cli.assembly.place_notes import NOTES
 from dem_cli.case.wording import show, unknown_name
 from dem_cli.contact.detect import block_shape, find_joints, world_corners
@@ -29,6 +29,7 @@ from dem_cli.model.blocks import Block
 from dem_cli.model.model import Model
 from dem_cli.model.places import block_at, undeformed
 from dem_cli.model.scales import smallest_edge
+from dem_cli.model.section_cuts import drift_ends, section_cut
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -82,6 +83,7 @@ def monitor_problems(case: Case, model: Model) -> list[CaseProblem]:
         link_problems(case, model)
         + shared_problems(case, model)
         + held_problems(case, model)
+        + cut_problems(case, model)
         + [
             CaseProblem(
                 ("monitor", i, "point"),
@@ -123,6 +125,39 @@ def held_problems(case: Case, model: Model) -> list[CaseProblem]:
     ]
 
 
+def cut_problems(case: Case, model: Model) -> list[CaseProblem]:
+    """Cuts that are no line or plane polygon, that pass through no joint, or whose height ends where no block is."""
+    found, joints = list[CaseProblem](), None
+    for i, monitor in enumerate(case.monitor):
+        if monitor.cut is None:
+            continue
+        path = ("monitor", i, "cut")
+        try:
+            cut = section_cut(monitor.cut)
+        except ValueError as error:
+            found.append(CaseProblem(path, str(error)))
+            continue
+        if monitor.height is not None:
+            ends = [end for end in drift_ends(monitor.cut, monitor.height) if block_at(model, end) is None]
+            found += [
+                CaseProblem((*path[:2], "height"), f"there is no block at {end.round(6).tolist()}, where it ends")
+                for end in ends
+            ]
+            continue
+        if joints is None:
+            from dem_cli.contact.between import StartJoints
+
+            joints = StartJoints(model).faces
+        sums = np.add.reduceat(joints.shares[:, None] * joints.on_first, joints.starts[:-1], axis=0)
+        middles = sums / np.add.reduceat(joints.shares, joints.starts[:-1])[:, None] if len(sums) else sums
+        if not cut.passes(model.centroids, joints.blocks, middles).any():
+            message = (
+                "passes through no joint: blocks are on the side of their centroid, and the middle of a joint between"
+            )
+            found.append(CaseProblem(path, f"{message} both sides lies across the cut"))
+    return found
+
+
 def shared_problems(case: Case, model: Model) -> list[CaseProblem]:
     """Monitors of the joint of two blocks that share none."""
     wanted = [(i, monitor.between) for i, monitor in enumerate(case.monitor) if monitor.between is not None]
@@ -151,18 +186,18 @@ def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
     faces = find_joints(model, corners, CLOSING_GAP * float(model.parts.sizes.min()))
     blocks = model.part_blocks[faces.parts]
     names, by_material = joint_table(case)
-    named = np.array(names)[model.joints_between(by_material, blocks)]
+    named = model.joints_between(by_material, blocks, joints_in_heads(case))
     found = []
     for name, table in profiles.items():
         layout = PointLayout(seed=case.seed, **table.ranges)
-        fault = motion_of(model.dimension).profile_fault(model, faces, corners, layout, named == name)
+        fault = motion_of(model.dimension).profile_fault(model, faces, corners, layout, named == names.index(name))
         if fault is not None:
             found.append(CaseProblem(("joints", name, "profile", fault.key), fault.why))
     return found
 
 
 def warnings(model: Model) -> list[str]:
-    """What makes a run slow or inexact without being wrong."""
+    """Notes on geometry that makes a run slow or inexact without being wrong."""
     free = ~model.fixed
     if not free.any():
         return ["every block is fixed: nothing can move"]

@@ -24,6 +24,9 @@ Turn = Annotated[float | tuple[float, ...], VectorLength(1, 3)]  # about z; in s
 Twist = Annotated[tuple[float, ...], VectorLength(3, 6)]  # a vector, then turns: about z, in space about x, y and z
 
 
+NOTHING = "none"  # joints.NAME.head: head joints are not filled
+
+
 class KeyProblem(ValueError):
     """Validation error of one key below the table being validated.
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from dem_cli.case.base import NOTHING
 from dem_cli.case.wording import either, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, dotted
 
@@ -18,6 +19,7 @@ SELECTING = (  # that select blocks
 LINKS = ("tie", "reinforcement")
 WITH_REAL_MASSES = ("time-history", "fragility", "modes")
 REACTIONS = ("reaction", "reaction_moment")  # quantities of monitors of what holds blocks
+OF_CUTS = ("normal_force", "shear_force", "moment", "shear_force_across", "moment_across", "torsion")  # and of cuts
 WITH_LIVE_LOADS = ("load", "pressure")
 
 
@@ -49,7 +51,7 @@ def complete(data: dict[str, Any], title: str) -> None:
 def problems(data: dict[str, Any]) -> list[CaseProblem]:
     """Unknown or doubled names, and a case without blocks."""
     found = [*unknown_materials(data), *unknown_in_interfaces(data), *unknown_structures(data)]
-    found += [*unknown_bars(data), *odd_cracks(data)]
+    found += [*unknown_bars(data), *odd_cracks(data), *odd_heads(data)]
     for key in ("structure", "block"):
         seen: dict[str, KeyPath] = {}
         for path, table in entries(data, key):
@@ -91,15 +93,15 @@ def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProbl
 
 
 def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
-    """Monitors of reactions where blocks have real masses: samples of a motion hold no forces."""
+    """Monitors of reactions and of forces in cuts where blocks have real masses: samples of a motion hold no forces."""
     if kind not in WITH_REAL_MASSES:
         return []
     asked = [(path, table.get("quantity")) for path, table in entries(data, "monitor")]
-    message = f"is not known in kind = {show(kind)}: only analyses without time follow what holds blocks"
+    message = f"is not known in kind = {show(kind)}: only analyses without time follow such forces"
     return [
         CaseProblem((*path, "quantity"), f"{show(quantity)} {message}")
         for path, quantity in asked
-        if quantity in REACTIONS
+        if quantity in (*REACTIONS, *OF_CUTS)
     ]
 
 
@@ -216,6 +218,31 @@ def odd_cracks(data: dict[str, Any]) -> Iterator[CaseProblem]:
                 (*path, "crack"),
                 "not known beside [[imperfection]]: the pieces of a stone would get errors each its own",
             )
+
+
+def odd_heads(data: dict[str, Any]) -> Iterator[CaseProblem]:
+    """Joints of heads that do not exist, that are the joint itself, or that have a joint for heads in turn."""
+    tables = data.get("joints")
+    heads = {
+        name: table["head"]
+        for name, table in (tables.items() if isinstance(tables, dict) else ())
+        if isinstance(table, dict) and isinstance(table.get("head"), str)
+    }
+    known = names(data, "joints")
+    for name, head in heads.items():
+        path = ("joints", name, "head")
+        if head == NOTHING and NOTHING in known:
+            yield CaseProblem(path, f"{show(head)} means both no joint and [joints.{NOTHING}]: give that another name")
+        elif head == NOTHING:
+            continue
+        elif head not in known:
+            others = [other for other in known if other != name]
+            yield CaseProblem(path, unknown_name("joint", head, [*others, NOTHING]))
+        elif head == name:
+            yield CaseProblem(path, f"{show(head)} is the joint itself; leave 'head' out where heads are like beds")
+        elif head in heads:
+            message = f"{show(head)} has a 'head' of its own ({show(heads[head])}): what lies in head joints has none"
+            yield CaseProblem(path, message)
 
 
 def unknown_structures(data: dict[str, Any]) -> Iterator[CaseProblem]:

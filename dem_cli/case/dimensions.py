@@ -49,6 +49,12 @@ SCOPES = (
     Scope("monitor.component", 3, "a rotation has none in 2D", ("x", "y", "z"), beside=("quantity", "rotation")),
     Scope("monitor.component", 3, "a moment has none in 2D", ("x", "y", "z"), beside=("quantity", "reaction_moment")),
     Scope("monitor.component", 3, "must be 'x' or 'y' in 2D", ("z",)),
+    Scope(
+        "monitor.quantity",
+        3,
+        "a line in 2D has 'normal_force', 'shear_force' and 'moment'",
+        ("shear_force_across", "moment_across", "torsion"),
+    ),
     Scope("initial.axis", 3, "blocks tilt in their plane in 2D: give dimension = 3"),
     Scope("block.thickness", 2, "not used in 3D: corners have three coordinates, and a polygon goes from y[0] to y[1]"),
     Scope("block.faces", 3, "faces are those of a block in 3D: give dimension = 3"),

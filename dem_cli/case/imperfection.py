@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 from typing import Any, ClassVar
 
 from pydantic import Field, model_validator
 
+from dem_cli.arithmetic.chance import chance
 from dem_cli.case.base import CaseModel, KeyProblem, Pair, Positive
 from dem_cli.case.selection import Selection
 from dem_cli.case.wording import show
@@ -86,13 +86,12 @@ def drawn(error: Error, seed: int, table: int, key: str, name: str) -> float:
     """The value of a key for the block or structure `name`; where it is drawn, from nothing but the other four."""
     if isinstance(error, float):
         return error
-    digest = hashlib.blake2b(f"{seed} {table} {key} {name}".encode(), digest_size=8).digest()
-    chance = ((int.from_bytes(digest, "big") >> 12) + 0.5) / 2.0**52  # between 0 and 1, neither of them
+    share = chance(seed, table, key, name)
     if isinstance(error, tuple):
-        return error[0] + chance * (error[1] - error[0])
+        return error[0] + share * (error[1] - error[0])
     from statistics import NormalDist
 
-    return NormalDist(error.mean, error.deviation).inv_cdf(chance)
+    return NormalDist(error.mean, error.deviation).inv_cdf(share)
 
 
 def _check_range(error: Any, *keys: str | int) -> None:

@@ -56,6 +56,12 @@ class Load(Selection):
         examples=[0.5],
     )
     kind: Kind = Field(default="dead", description=KIND, examples=["live"])
+    inertia: bool = Field(
+        default=False,
+        description="true: of a dead load, what presses down is the weight of a mass, such as that of a floor, and has "
+        "its share in the load of pattern = 'mass', as that of the blocks",
+        examples=[True],
+    )
     follows: Literal["point", "block"] | None = Field(
         default=None,
         description="where geometry moves: 'point', it goes along with the point of the block that it was put on; "
@@ -83,6 +89,14 @@ class Load(Selection):
             raise KeyProblem("'point' is not used without at or line: a force at the centroid follows it", "follows")
         if self.each and placed:
             raise KeyProblem(f"true is not allowed with {'at' if self.line is None else 'line'}", "each")
+        return self
+
+    @model_validator(mode="after")
+    def _inertia_of_weights(self) -> Load:
+        if self.inertia and self.kind == "live":
+            raise KeyProblem("true is not allowed of a live load: it is no weight", "inertia")
+        if self.inertia and (self.force or self.force_per_length or (0.0,))[-1] >= 0.0:
+            raise KeyProblem("true is not allowed of a force that does not press down: it is no weight", "inertia")
         return self
 
     @property

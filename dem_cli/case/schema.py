@@ -28,7 +28,7 @@ from dem_cli.case.base import (
     sequence_of,
 )
 from dem_cli.case.block_table import BlockTable
-from dem_cli.case.cross_references import REACTIONS
+from dem_cli.case.cross_references import OF_CUTS, REACTIONS
 from dem_cli.case.dimensions import in_space
 from dem_cli.case.imperfection import Imperfection
 from dem_cli.case.load_tables import Fill, GroundTable, Load, Pressure, Restraint
@@ -120,9 +120,10 @@ class Settlement(Selection):
 
 
 DEFAULT_LAW, DEFAULT_ANALYSIS = "coulomb", "pushover"  # of tables that do not say
-PLACES = ("block", "structure", "point", "between", "tie", "bar")  # where a monitor may be
+PLACES = ("block", "structure", "point", "between", "cut", "tie", "bar")  # where a monitor may be
 OF_LINKS = {"tie": ("force", "elongation"), "bar": ("force", "slip")}
 AT_JOINTS = ("opening", "slip")
+DRIFT = "drift"  # of a cut
 OF_POINTS = ("displacement", "velocity", "acceleration")
 VECTORS = (*OF_POINTS, "rotation", *REACTIONS)  # what has components
 
@@ -148,6 +149,18 @@ class Monitor(Selection):
         description="for opening and slip: ids of two blocks that share a joint at the start",
         examples=[["arch-3", "arch-4"]],
     )
+    cut: Annotated[tuple[Vector, ...], Field(min_length=2)] | None = Field(
+        default=None,
+        description="for forces in a pier or spandrel, and its drift: a line across it from A to B, in 3D the corners "
+        "of a plane polygon [m]; the part beyond is to the left of the line, or where the corners are seen "
+        "counter-clockwise from",
+        examples=[[[0.0, 1.0], [1.2, 1.0]]],
+    )
+    height: Positive | None = Field(
+        default=None,
+        description="for the drift of a cut: height of the pier, half of it to either side of the cut [m]",
+        examples=[2.0],
+    )
     tie: str | None = Field(default=None, description="for force and elongation: id of a [[tie]]", examples=["north"])
     bar: str | None = Field(
         default=None, description="for force and slip: id of a [[reinforcement]], with at", examples=["corner-1"]
@@ -166,6 +179,13 @@ class Monitor(Selection):
         "elongation",
         "reaction",
         "reaction_moment",
+        "normal_force",
+        "shear_force",
+        "moment",
+        "shear_force_across",
+        "moment_across",
+        "torsion",
+        "drift",
     ] = Field(
         default="displacement",
         description="what is followed: displacement [m], rotation [rad], velocity [m/s] or acceleration [m/s2]; of "
@@ -174,7 +194,12 @@ class Monitor(Selection):
         "of a tie: force [N], tension positive, or elongation [m] since it was drawn; of a bar: force, or slip [m] "
         "along it against its block; of blocks that are fixed or have a [[restraint]], in analyses without time: "
         "reaction [N], what holds them gives to all of them together, or its reaction_moment [N m] about their common "
-        "centroid, where that is then",
+        "centroid, where that is then; of a cut, in analyses without time, what the part beyond it gives to the other: "
+        "normal_force [N], compression positive, shear_force [N] along the line or first side, and moment [N m], "
+        "positive where it presses the end of the line: normal force times eccentricity; in 3D also "
+        "shear_force_across and moment_across, along the normal × the first side, and torsion about the normal; of a "
+        "cut with its height, in all analyses: drift [rad], the displacement along the line between both ends of the "
+        "height, over it",
         examples=["rotation"],
     )
     component: Literal["x", "y", "z"] | None = Field(
@@ -195,11 +220,15 @@ class Monitor(Selection):
             raise ValueError(f"{found} given; a monitor has one of {listed} and '{PLACES[-1]}'")
         if (self.at is None) == (self.bar is not None):
             raise KeyProblem("missing; how far along the bar [m]" if self.bar else "not used without bar", "at")
-        allowed = {"between": AT_JOINTS, **OF_LINKS, "point": (*OF_POINTS, "rotation")}.get(given[0], VECTORS)
+        allowed = {"between": AT_JOINTS, **OF_LINKS, "point": (*OF_POINTS, "rotation"), "cut": (*OF_CUTS, DRIFT)}.get(
+            given[0], VECTORS
+        )
         if self.quantity not in allowed:
             where = "'between' two blocks" if self.between is not None else f"a {given[0]}"
             listed = ", ".join(f"'{name}'" for name in allowed)
             raise KeyProblem(f"'{self.quantity}' is not allowed of {where}; must be one of {listed}", "quantity")
+        if (self.height is None) == (self.quantity == DRIFT):
+            raise KeyProblem("missing; the height of the pier [m]" if self.cut else "not used without drift", "height")
         if self.quantity not in VECTORS and self.component is not None:
             article = "an" if self.quantity[0] in "aeiou" else "a"
             raise KeyProblem(
@@ -220,11 +249,18 @@ class Monitor(Selection):
         """Where it is, in words."""
         if self.between is not None:
             return " | ".join(self.between)
+        if self.cut is not None:
+            return f"cut {' '.join(_point(corner) for corner in self.cut)}"
         if self.tie is not None:
             return self.tie
         if self.bar is not None:
             return f"{self.bar} at {self.at:g}"
-        return self.selected or f"({', '.join(f'{x:g}' for x in self.point or ())})"
+        return self.selected or _point(self.point or ())
+
+
+def _point(point: tuple[float, ...]) -> str:
+    """(0.5, 2)"""
+    return f"({', '.join(f'{x:g}' for x in point)})"
 
 
 class Output(CaseModel):

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 Done = TypeVar("Done")
 FEW_CORNERS = {2: 1500, 3: 128}  # of blocks, by dimension: up to here Python takes less than numba does to load, 0.4 s
+FEW_NEIGHBOURS = 8  # pairs of parts that are near each other, per part: a wall has three
 
 
 @click.command("check", short_help="Validate a case and print its model; solve nothing.")
@@ -79,13 +80,30 @@ def at_once(model: Model, work: Callable[[], Done]) -> Done:
     """What `work` returns: of few blocks without numba, which takes longer to load than Python to be done with them."""
     from dem_cli.kernels.jit import uncompiled
 
-    if len(model.vertices) <= FEW_CORNERS[model.dimension]:
+    if len(model.vertices) <= FEW_CORNERS[model.dimension] and _pairs(model) <= FEW_NEIGHBOURS * model.n_parts:
         try:
             with uncompiled():
                 return work()
         except (ArithmeticError, ValueError):  # which compiled code does not raise
             pass
     return work()
+
+
+def _pairs(model: Model) -> int:
+    """How many pairs of parts are near each other: what checks take time for, where one block is huge or many overlap.
+
+    Of few parts: it takes memory by the square of their number.
+    """
+    import numpy as np
+
+    from dem_cli.contact.gaps import notice_reach
+    from dem_cli.model.places import undeformed
+
+    corners, starts = undeformed(model), model.part_starts[:-1]
+    low = np.minimum.reduceat(corners, starts, axis=0) - notice_reach(model)
+    high = np.maximum.reduceat(corners, starts, axis=0)
+    near = ((low[:, None] <= high) & (low <= high[:, None])).all(axis=2)
+    return int(near.sum() - len(starts)) // 2
 
 
 def draw(case: Case, model: Model, found: dict[str, str], path: Path, asked: Standpoint) -> None:

@@ -42,7 +42,7 @@ def report(error: Exception, words: Sequence[str]) -> int:
 
 
 def summary(error: Exception) -> str:
-    """What happened, in one line."""
+    """The exception in one line."""
     said = str(error).strip().splitlines()
     return f"{type(error).__name__}: {said[0]}" if said else type(error).__name__
 

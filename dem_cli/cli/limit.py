@@ -151,6 +151,7 @@ def frames(loaded: LoadedCase, found: LimitLoads) -> list[Frame]:
 
 def end_of_path(found: LimitLoads) -> Collapse | None:
     """The state of collapse of joints that do not dilate; None where it was not found, or not looked for."""
+    from dem_cli.contact.corner_forces import at_corners
     from dem_cli.limit.associated import OK
     from dem_cli.limit.snapshot import Collapse
 
@@ -159,7 +160,8 @@ def end_of_path(found: LimitLoads) -> Collapse | None:
         return None
     if path.load is None or path.normal is None or path.shear is None or path.mechanism is None:
         return None
-    return Collapse("non-associated", path.load, path.normal, path.shear, path.mechanism, path.factorisations)
+    shear = at_corners(found.structure.joints, path.normal, path.shear)
+    return Collapse("non-associated", path.load, path.normal, shear, path.mechanism, path.factorisations)
 
 
 def write(

@@ -85,6 +85,8 @@ def command(
     if not sweep and not asked:
         if options != ChartOptions() or (output is not None and output.suffix.lower() in CHART_FORMATS):
             raise UsageError("-o FILE, --size, --log, --xlim and --ylim are for charts: choose columns with -x and -y")
+        if output is not None and output.suffix[1:].isalpha() and not output.is_dir():
+            raise UsageError(f"-o {output}: all pictures of a run go to a folder; '{output.suffix}' names a file")
         draw_pictures(folders[0], output, animate, Standpoint(None, azimuth, elevation))
         return
     if animate:

@@ -16,7 +16,7 @@ from dem_cli.model.model import Model
 
 
 class BlockCompliance(NamedTuple):
-    """What the joints of each block have beside their own compliance."""
+    """Compliance of blocks that deform, lumped into the joints on either side of them."""
 
     deforms: np.ndarray  # which blocks do, (n_blocks,) bool
     behind: np.ndarray  # ℓ/E and ℓ/G of the block behind each face [m/Pa], (n_faces, 2)

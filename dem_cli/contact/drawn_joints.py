@@ -8,6 +8,7 @@ of its two blocks.
 
 from __future__ import annotations
 
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from dem_cli.contact.between import StartJoints
 from dem_cli.contact.joints import DrawnFaces
 from dem_cli.geometry.outlines import away_from, furthest
 from dem_cli.geometry.rotation import beside, tangents_of, turning
+from dem_cli.model.copies import repeated
 from dem_cli.model.model import Model
 from dem_cli.output.record import STATES, ContactRecord, JointPlaces, JointStates
 
@@ -35,21 +37,36 @@ class DrawnJoints:
 
     def __init__(self, model: Model):
         faces = StartJoints(model).faces
-        keys = _keys(faces.blocks, model.n_blocks)
-        order = np.argsort(keys, kind="stable")
-        self.model, self.keys, self.faces = model, keys[order], faces.taken(order)
-        self.owners = np.repeat(np.arange(len(order)), np.diff(self.faces.starts))
-        on = (self.faces.on_first, self.faces.on_second)
-        self.blocks = [self.faces.blocks[self.owners, i] for i in (0, 1)]  # of each place
-        self.arms = [on[i] - model.centroids[self.blocks[i]] for i in (0, 1)]
-        self.apart = on[1] - on[0]
-        self.drawn = np.maximum((self.apart * self.faces.normals[self.owners]).sum(axis=1), 0.0)  # open as drawn [m]
+        order = np.argsort(_keys(faces.blocks, model.n_blocks), kind="stable")
+        self._follow(faces.taken(order), model.centroids)
         self.places = joint_places(self.faces)
 
+    def _follow(self, faces: DrawnFaces, centroids: np.ndarray) -> None:
+        """What is followed: joints sorted by their keys, of blocks whose centroids [m] were here when it was drawn."""
+        self.faces, self.centroids = faces, centroids
+        self.keys = _keys(faces.blocks, len(centroids))
+        self.owners = np.repeat(np.arange(len(faces.areas)), np.diff(self.faces.starts))
+        on = (self.faces.on_first, self.faces.on_second)
+        self.blocks = [self.faces.blocks[self.owners, i] for i in (0, 1)]  # of each place
+        self.arms = [on[i] - centroids[self.blocks[i]] for i in (0, 1)]
+        self.apart = on[1] - on[0]
+        self.drawn = np.maximum((self.apart * self.faces.normals[self.owners]).sum(axis=1), 0.0)  # open as drawn [m]
+
+    def _copies(self, count: int) -> DrawnJoints:
+        """The joints of so many copies of the structure, whose blocks and joints are numbered through."""
+        found = copy(self)
+        found._follow(self.faces.copies(count, len(self.centroids)), repeated(self.centroids, count))
+        return found
+
     def at(self, positions: np.ndarray, orientations: np.ndarray, contacts: ContactRecord) -> JointInstant:
-        """Where the blocks are (centroids [m], (n_blocks, d), and how they have turned), under these forces."""
-        faces, owners, n = self.faces, self.owners, len(self.places.area)
-        moved, shifts = positions - self.model.centroids, []
+        """Where the blocks are (centroids [m], (n_blocks, d), and how they have turned), under these forces.
+
+        Of several instants as output.record.FrameStack has them: the joints of each lie behind those before.
+        """
+        if len(positions) > len(self.centroids):
+            return self._copies(len(positions) // len(self.centroids)).at(positions, orientations, contacts)
+        faces, owners, n = self.faces, self.owners, len(self.faces.areas)
+        moved, shifts = positions - self.centroids, []
         for block, arms in zip(self.blocks, self.arms, strict=True):
             shifts.append(moved[block] + (turning(orientations[block])(arms) - arms))
         apart = self.apart + shifts[1] - shifts[0]
@@ -73,11 +90,11 @@ class DrawnJoints:
 
     def _means(self, values: np.ndarray) -> np.ndarray:
         """Means over the area of each joint, of values at its places."""
-        return np.bincount(self.owners, self.faces.shares * values, len(self.places.area))
+        return np.bincount(self.owners, self.faces.shares * values, len(self.faces.areas))
 
     def _owners(self, contacts: ContactRecord, ends: np.ndarray, normals: np.ndarray) -> np.ndarray:
         """Joint of each contact point, (n_points,): the nearest one of its blocks; −1: they had none."""
-        keys = _keys(contacts.blocks, self.model.n_blocks)
+        keys = _keys(contacts.blocks, len(self.centroids))
         first, after = (np.searchsorted(self.keys, keys, side) for side in ("left", "right"))
         owners = np.where(after > first, first, -1)
         several = np.flatnonzero(after - first > 1)

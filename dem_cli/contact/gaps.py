@@ -18,7 +18,7 @@ from dem_cli.contact.joints import Faces, JointProperties, Joints
 from dem_cli.contact.start import TOUCHING_GAP, bodies_at_rest, joints_of_start
 from dem_cli.model.block_measures import median
 from dem_cli.model.model import Model
-from dem_cli.model.places import block_at, undeformed
+from dem_cli.model.places import inside_blocks, undeformed
 from dem_cli.model.scales import smallest_edge
 
 CLOSING_GAP = 1e-3  # of the size of the smaller part
@@ -54,17 +54,22 @@ def joint_reach(model: Model) -> float:
     return CLOSING_GAP * float((model.parts.sizes[free] if free.any() else model.parts.sizes).max())
 
 
+def notice_reach(model: Model) -> float:
+    """Distance within which all gaps are that are told or close [m]."""
+    free = ~model.fixed[model.part_blocks]
+    return max(joint_reach(model), NOTICED_GAP * median(model.parts.sizes[free]) if free.any() else 0.0)
+
+
 def gaps_of_start(model: Model) -> StartGaps:
     """The gaps of the undeformed structure that close, and those that are narrow enough to be named."""
     sizes, corners = model.parts.sizes, undeformed(model)
-    typical = median(sizes[~model.fixed[model.part_blocks]]) if not model.fixed.all() else 0.0
-    faces = find_joints(model, corners, max(joint_reach(model), NOTICED_GAP * typical))
+    faces = find_joints(model, corners, notice_reach(model))
     scale, narrow = sizes[faces.parts].min(axis=1), geometry_of(model.dimension)
     apart = np.abs(faces.separation) > TOUCHING_GAP * smallest_edge(model)
     close, least = joined(faces.separation, scale), SLIVER * scale
     facing = narrow.facing(model, faces, corners, STEEPEST, least)
     noticed = apart & ~close & facing & (faces.separation <= NOTICED_GAP * scale)
-    noticed[noticed] = [not _filled(model, faces, corners, k) for k in np.flatnonzero(noticed)]
+    noticed[noticed] = ~_filled(model, faces.where(noticed), corners)
     closing = apart & close
     closing[closing] = facing[closing] | narrow.touching(model, faces.where(closing), corners, least[closing])
     kept = closing | noticed
@@ -75,14 +80,20 @@ def gaps_of_start(model: Model) -> StartGaps:
     return StartGaps(blocks[nearest], widths[nearest], close[nearest])
 
 
-def _filled(model: Model, faces: Faces, corners: np.ndarray, pair: np.integer) -> bool:
-    """Whether other blocks lie between two faces all over where they look at each other, a thin tip or a sliver."""
-    found = geometry_of(model.dimension).drawn(model, faces.where(np.array([pair])), corners, 0.0)
-    if not len(found.blocks):
-        return False
-    between = 0.5 * (found.on_first + found.on_second)
-    middle = between.mean(axis=0)
-    return all(block_at(model, middle + share * (place - middle)) is not None for share in SAMPLED for place in between)
+def _filled(model: Model, faces: Faces, corners: np.ndarray) -> np.ndarray:
+    """Whether other blocks lie between two faces all over where they look at each other, a thin tip or a sliver, (n,).
+
+    All places are looked up at once: there may be as many such pairs as there are stones.
+    """
+    n, narrow, places = len(faces.parts), geometry_of(model.dimension), []
+    for pair in range(n):
+        found = narrow.drawn(model, faces.where(np.array([pair])), corners, 0.0)
+        between = 0.5 * (found.on_first + found.on_second)
+        middle = between.mean(axis=0) if len(between) else between
+        places.append(np.concatenate([middle + share * (between - middle) for share in SAMPLED]))
+    counts = np.array([len(own) for own in places], np.int64)
+    outside = ~inside_blocks(model, np.concatenate(places)) if n else np.zeros(0, bool)
+    return (counts > 0) & (np.bincount(np.repeat(np.arange(n), counts), outside, minlength=n) == 0)
 
 
 def wedges_of_start(model: Model, properties: JointProperties) -> StartGaps:

@@ -37,6 +37,7 @@ def in_planes(joints: Joints, gaps: np.ndarray, positions: np.ndarray) -> FixedJ
         integrated=joints.integrated,
         after=joints.after,
         fans=joints.fans,
+        torsion=joints.torsion,
     )
 
 

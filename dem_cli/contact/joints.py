@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 
 from dem_cli.contact.block_compliance import BlockCompliance
 from dem_cli.contact.layout import PointLayout
+from dem_cli.kernels.fixed_joints import NO_SHARES
 from dem_cli.kernels.records import NOTHING, Contacts, FixedJoints, Joints, MovingJoints
+from dem_cli.model.copies import numbered_through, repeated
 from dem_cli.model.model import Model
 
 
@@ -50,14 +52,22 @@ class DrawnFaces(NamedTuple):
             self.shares[places], self.lengths[order], self.areas[order],
         )  # fmt: skip
 
+    def copies(self, count: int, n_blocks: int) -> DrawnFaces:
+        """Those of so many copies of a structure of n_blocks blocks; blocks and places are numbered through."""
+        starts = numbered_through(self.starts[:-1], self.starts[-1], count)
+        normals, *others = (repeated(values, count) for values in (self.normals, *self[3:]))
+        blocks = numbered_through(self.blocks, n_blocks, count)
+        return DrawnFaces(blocks, normals, np.append(starts, count * self.starts[-1]), *others)
+
 
 # Normal forces [N] of points by parameters of their joints, overlaps [m], negative: open, memory and kn
 # (laws/law.py: `pressed`).
 PressedLaw = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
-# Parameters of the law of joints, (n, n_parameters), by their named joint (n,) and their stiffness kn [Pa/m], (n,).
-LawRows = Callable[[np.ndarray, np.ndarray], np.ndarray]
+# Parameters of the law of joints, (n, n_parameters), by their named joint (n,), their stiffness kn [Pa/m], (n,), and
+# the model with the numbers of their blocks, (n, 2).
+LawRows = Callable[[np.ndarray, np.ndarray, Model, np.ndarray], np.ndarray]
 
 
 class JointProperties(NamedTuple):
@@ -70,12 +80,15 @@ class JointProperties(NamedTuple):
     law: np.ndarray  # parameters of the law, (n_named, n_parameters)
     intact: np.ndarray  # what points that touch at the start remember, (n_named, n_scalars)
     layouts: tuple[PointLayout | None, ...]  # where the contact points are; None: at the two ends of the joint
+    spread: np.ndarray  # in space: rigid ones with points at their corners because nobody asked for others, and without
+    # bonds, whose friction has the torsion of a spread pressure (contact/corner_forces.py), (n_named,) bool
     rigid: np.ndarray  # whose stiffness is a means and no property: kn = "auto", no block deforms, (n_named,) bool
     pressed: PressedLaw = lambda parameters, overlaps, memory, kn: kn * np.maximum(overlaps, 0.0)
     bonded: bool = False  # whether points lose work across the joint too: it is counted from gap to gap
     integrated: np.ndarray | None = None  # whose pressure is integrated where elastic, (n_named,) bool; None: of none
     compliance: BlockCompliance | None = None  # of the blocks, lumped into their joints; None: all blocks are rigid
-    rows: LawRows | None = None  # of joints whose stiffness is not that of their name; None: these are those of `law`
+    heads: np.ndarray | None = None  # named joint in the head joints of each, −1: nothing, (n_named,); None: its own
+    rows: LawRows | None = None  # of joints whose stiffness or friction is not that of their name; None: as `law`
 
     @property
     def profiled(self) -> bool:
@@ -108,8 +121,15 @@ class JointProperties(NamedTuple):
         return np.array([2 if layout.centred else layout.points for layout in self.plane])
 
     def between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
-        """The named joint of each pair of blocks (n, 2), (n,) int64."""
-        return model.joints_between(self.by_material, blocks)
+        """The named joint of each pair of blocks (n, 2), −1: nothing is between them, (n,) int64."""
+        heads = np.arange(len(self.names)) if self.heads is None else self.heads
+        return model.joints_between(self.by_material, blocks, heads)
+
+    def acting(self, model: Model, faces: Faces) -> Faces:
+        """Those of some faces between which anything can act: not those in head joints that are not filled."""
+        if self.heads is None or (self.heads >= 0).all():
+            return faces
+        return faces.where(self.between(model, model.part_blocks[faces.parts]) >= 0)
 
     def rigid_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
         """Whether the joint of each pair of blocks (n, 2) is as rigid as the solver can make it, (n,) bool."""
@@ -122,6 +142,11 @@ class JointProperties(NamedTuple):
             return np.zeros(len(blocks), bool)
         return self.integrated[self.between(model, blocks)] & ~self.rigid_between(model, blocks)
 
+    def spread_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
+        """Whether friction between each pair of blocks (n, 2) has the torsion of a spread pressure, (n,) bool."""
+        acts = self.rigid_between(model, blocks) | self.integrated_between(model, blocks)
+        return self.spread[self.between(model, blocks)] & acts
+
     def stiffness_of(self, named: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """kn and ks of joints by name and faces [Pa/m], (n,) each, with what their blocks give way.
 
@@ -133,13 +158,16 @@ class JointProperties(NamedTuple):
         together = self.compliance.in_series(np.column_stack([kn, ks]), faces, named)
         return together[:, 0], together[:, 1]
 
-    def law_of(self, named: np.ndarray, kn: np.ndarray) -> np.ndarray:
-        """Parameters of the law of joints by name and stiffness kn [Pa/m], (n, n_parameters)."""
-        return np.ascontiguousarray(self.law[named] if self.rows is None else self.rows(named, kn))
+    def law_of(self, named: np.ndarray, kn: np.ndarray, model: Model, blocks: np.ndarray) -> np.ndarray:
+        """Parameters of the law of joints by name, stiffness kn [Pa/m] and pair of blocks (n, 2), (n, n_parameters)."""
+        return np.ascontiguousarray(self.law[named] if self.rows is None else self.rows(named, kn, model, blocks))
 
 
 class JointGeometry(Protocol):
-    """What a narrow phase knows of the joints, one record for each dimension (kernels/records.py)."""
+    """What a narrow phase knows of the joints, one record of arrays for each dimension (kernels/records.py)."""
+
+    def __iter__(self) -> Iterator[np.ndarray]:
+        """All of them."""
 
     @property
     def keys(self) -> np.ndarray:
@@ -151,7 +179,7 @@ class JointGeometry(Protocol):
 
     @property
     def features(self) -> np.ndarray:
-        """What each point is within its joint, (n_points,)."""
+        """Feature of its joint that each contact point is, a number within the joint, (n_points,)."""
 
     def kept(self) -> Self:
         """The same with a copy of what changes."""
@@ -191,12 +219,14 @@ def joints_of(
     starts: np.ndarray,
     areas: np.ndarray,
     shares: np.ndarray,
+    torsion: np.ndarray = NO_SHARES,
     lone: np.ndarray | bool = False,
 ) -> MovingJoints:
     """Joints of pairs of faces with their stiffness and law; frames, levers and points are yet to be placed.
 
     starts: first point of each joint, (n_joints + 1,); areas: of the joints [m²], (n_joints,); shares: of it that
-    belong to each point, (n_points,); lone: joints of an edge or a corner, that have no face, (n_joints,) bool.
+    belong to each point, (n_points,); torsion: in space, as FixedJoints.torsion, (n_joints,); lone: joints of an edge
+    or a corner, that have no face, (n_joints,) bool.
     """
     d, r, n_points = model.dimension, model.inertias.shape[1], int(starts[-1])
     blocks = model.part_blocks[faces.parts]
@@ -215,7 +245,8 @@ def joints_of(
         points=np.zeros((n_points, d)),
         kn=(kn * areas)[owners] * shares,
         ks=(ks * areas)[owners] * shares,
-        law=properties.law_of(named, kn),
+        law=properties.law_of(named, kn, model, blocks),
+        torsion=torsion,
         held=np.full(len(blocks), -1),
         **elastic,
     )

@@ -24,7 +24,7 @@ class Meetings(NamedTuple):
     weights: np.ndarray  # area of each point of face joints [m²], else 1, (n_points,)
     gaps: np.ndarray  # [m], (n_points,)
     features: np.ndarray  # what each point is, (n_points,)
-    measures: np.ndarray  # columns as in kernels/spatial_geometry.py, (n, 7)
+    measures: np.ndarray  # columns as in kernels/spatial_geometry.py, (n, 8)
 
     @property
     def owners(self) -> np.ndarray:
@@ -61,7 +61,7 @@ def meetings(model: Model, faces: Faces, corners: np.ndarray) -> Meetings:
     n, sizes = len(faces.parts), np.diff(solids.face_starts)
     room = np.concatenate([[0], np.cumsum(sizes[faces.faces].sum(axis=1))]).astype(np.int64)
     work = room_of(solids)
-    frames, measures = np.zeros((n, 9)), np.zeros((n, 7))
+    frames, measures = np.zeros((n, 9)), np.zeros((n, 8))
     places, weights, gaps = np.zeros((room[-1], 3)), np.zeros(room[-1]), np.zeros(room[-1])
     features, kinds, counts = np.zeros(room[-1], np.int64), np.zeros(n, np.int8), np.zeros(n, np.int64)
     out = (frames, places, weights, gaps, features, measures)

@@ -29,7 +29,7 @@ from dem_cli.kernels.records import (
     SpatialGeometry,
 )
 from dem_cli.kernels.separation import separations
-from dem_cli.kernels.spatial_geometry import AREA, CENTRE, GAP, MARGIN, PARALLEL, POLAR
+from dem_cli.kernels.spatial_geometry import AREA, CENTRE, GAP, MARGIN, PARALLEL, POLAR, TORSION
 from dem_cli.model.block_measures import median
 from dem_cli.model.model import Model
 
@@ -132,7 +132,9 @@ def points(
         named = properties.between(model, model.part_blocks[faces.parts])
         found, shares = _with_centres(found, shares, ~lone & properties.centred[named])
         found, shares = _with_rules(found, shares, np.where(lone, 0, properties.along_sides[named]))
-    joints = joints_of(model, faces, properties, found.starts, areas, shares, lone)
+    spread = properties.spread_between(model, model.part_blocks[faces.parts])
+    torsion = np.where(spread, found.measures[:, TORSION], 1.0)
+    joints = joints_of(model, faces, properties, found.starts, areas, shares, torsion, lone)
     geometry = SpatialGeometry(
         keys=faces.faces,
         features=found.features,

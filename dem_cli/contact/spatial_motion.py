@@ -64,7 +64,8 @@ def points(
     kinds, edges = np.zeros(n, np.int8), np.full((n, 5), -1)
     classify(solids, faces.parts, faces.faces, faces.separation, work, kinds, edges)
     n_points = int(starts[-1])
-    joints = joints_of(model, faces, properties, starts, np.zeros(n), np.zeros(n_points), kinds != FACES)
+    none = np.zeros(n), np.zeros(n_points)
+    joints = joints_of(model, faces, properties, starts, *none, np.ones(n), kinds != FACES)
     normals = model.faces.normals[faces.faces]
     geometry = SpatialMotion(
         keys=faces.parts,
@@ -111,7 +112,7 @@ def _median_free_face(model: Model) -> float:
 
 
 def _scales(model: Model, faces: Faces, properties: JointProperties, own: np.ndarray) -> np.ndarray:
-    """SpatialMotion.scales of pairs of faces, (n, 9). own: Caps.corners of them, (n,).
+    """SpatialMotion.scales of pairs of faces, (n, 10). own: Caps.corners of them, (n,).
 
     Where faces meet that did not at the start, they have their corners and the centre.
     """
@@ -124,9 +125,10 @@ def _scales(model: Model, faces: Faces, properties: JointProperties, own: np.nda
     n, smaller = len(faces.parts), np.maximum(areas[faces.faces].min(axis=1), typical)
     face = np.minimum(median, smaller)  # a small block on a large one has no pillars for corners, a bevel no needles
     reach = SKINS * np.maximum(faces.reach, 0.0)
+    spread = properties.spread_between(model, blocks).astype(float)
     return np.column_stack([
         np.sqrt(smaller), BAND * shortest[faces.faces].min(axis=1), kn, ks,
-        LONE * face, FLOOR * face, np.full(n, reach), centred, own,
+        LONE * face, FLOOR * face, np.full(n, reach), centred, own, spread,
     ])  # fmt: skip
 
 

@@ -56,9 +56,9 @@ def _unbent(model: Model) -> dict[str, np.ndarray]:
     return {"bent": np.zeros((n, two)), "bending": np.zeros((n, two)), "triads": np.zeros((n, two // 2))}
 
 
-def close_touching(contacts: Contacts, smallest: float) -> None:
-    """Gaps that are nothing but round-off become none."""
-    contacts.gaps[np.abs(contacts.gaps) <= TOUCHING_GAP * smallest] = 0.0
+def close_touching(contacts: Contacts, smallest: float, near: float = TOUCHING_GAP) -> None:
+    """Gaps that are nothing but round-off become none; near: up to this share of the smallest edge."""
+    contacts.gaps[np.abs(contacts.gaps) <= near * smallest] = 0.0
 
 
 def bond_touching(model: Model, built: JointArrays, properties: JointProperties, narrow: AnyNarrowPhase) -> None:
@@ -72,18 +72,24 @@ def bond_touching(model: Model, built: JointArrays, properties: JointProperties,
 
 
 def joints_of_start(
-    model: Model, bodies: Bodies, properties: JointProperties, smallest: float, n_memory: int = 0
+    model: Model,
+    bodies: Bodies,
+    properties: JointProperties,
+    smallest: float,
+    n_memory: int = 0,
+    near: float = TOUCHING_GAP,
 ) -> JointArrays:
     """Faces that touch in the undeformed structure: what fixed geometry and limit analysis work on.
 
-    smallest: shortest edge of a block [m] (model.scales). Faces that meet corner to corner are left out: to
-    first order they cannot carry force. All points of a joint lie in one plane.
+    smallest: shortest edge of a block [m] (model.scales); near: gap or overlap, over that, up to which faces touch [-].
+    Faces that meet corner to corner are left out: to first order they cannot carry force. All points of a joint lie in
+    one plane.
     """
-    narrow, reach = geometry_of(model.dimension), TOUCHING_GAP * smallest
-    faces = narrow.find(model, bodies.corners, reach)
+    narrow, reach = geometry_of(model.dimension), near * smallest
+    faces = properties.acting(model, narrow.find(model, bodies.corners, reach))
     faces = faces.where(narrow.touching(model, faces, bodies.corners, reach))
     built = build_joints(model, faces, bodies, properties, n_memory, moves=False)
-    close_touching(built.contacts, smallest)
+    close_touching(built.contacts, smallest, near)
     bond_touching(model, built, properties, narrow)
     planes = in_planes(built.joints, built.contacts.gaps, bodies.positions)
     return built._replace(joints=planes, geometry=built.geometry.settled())

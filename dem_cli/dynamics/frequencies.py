@@ -129,6 +129,13 @@ def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = 
     return found._replace(geometric=(per_mass.T @ turning @ per_mass).tocsr())
 
 
+def with_springs(found: System, springs: csr_array) -> System:
+    """The same with further stiffness of the free degrees of freedom [N/m, N, N m], (n_free, n_free), symmetric."""
+    per_mass = _per_mass(found.masses, found.axes)
+    more = (per_mass.T @ springs @ per_mass).tocsr()
+    return found._replace(geometric=more if found.geometric is None else (found.geometric + more).tocsr())
+
+
 def _with_links(found: System, sim: Simulation, acting: bool) -> csr_array:
     """Rows of the joints, below them √k T L⁻¹ of links; acting: of those that carry a force now."""
     from scipy.sparse import diags_array, vstack

@@ -209,12 +209,12 @@ class TimeHistory:
         n_samples = -(-(since + n_steps) // every)
         watch = sim.watch(monitors.watched, every, n_samples)
         ground = self.ground.stretch((done - since) * dt, since + n_steps, dt)
+        new = 1 if since else 0  # the first sample of a stretch that begins between two is none
+        times, base = self.ground.sampled(done - since + every * new, max(n_samples - new, 0), every, dt)
         sim.shake(ground, n_steps, watch, since, self.snapshots if self.track.frames else None)
         check_finite(sim)
-        new = 1 if since else 0  # the first sample of a stretch that begins between two is none
         values = np.zeros((0, len(self.peaks)))
         if n_samples > new:
-            times, base = self.ground.sampled(done - since + every * new, n_samples - new, every, dt)
             values = monitors.series(watch.samples[new:], base, watch.links[new:])
             self.track.observer.samples(Samples(times, base, values))
         sim.show_base(self.ground.along(sim.time), self.case.gravity)
@@ -265,8 +265,8 @@ def damping_of_start(case: Case, model: Model, settings: Settings = DEFAULT) -> 
     """The [damping] of a case for the joints that it starts with. Raises CaseError as `damping_of` does."""
     properties = joint_properties(case, model, settings.stiffness.dynamics)
     rest = bodies_at_rest(model, origin_of(model))
-    joints = joints_of_start(model, rest, properties, smallest_edge(model)).joints
-    return damping_of(case, model, joints, settings)
+    start = joints_of_start(model, rest, properties, smallest_edge(model))
+    return damping_of(case, model, start, settings)
 
 
 def shaken(

@@ -48,6 +48,9 @@ def _stiffness(model: Model, properties: JointProperties, faces: np.ndarray) -> 
     blocks = model.part_blocks[topology.face_parts[faces]]
     owners = np.repeat(blocks, counts)
     named = properties.by_material[model.block_material[blocks]]  # the joints that the material of each block has
+    if len(model.courses) and properties.heads is not None:
+        heads = properties.heads[named]
+        named = np.concatenate([named, np.where(heads >= 0, heads, named)], axis=1)
     each = [properties.stiffness_of(joint, faces[:, None]) for joint in named.T]
     kn, ks = (np.max(of, axis=0) * _areas(model, faces) / counts for of in zip(*each, strict=True))
     kn, ks = np.repeat(kn, counts), np.repeat(ks, counts)

@@ -14,10 +14,12 @@ import numpy as np
 
 from dem_cli.arithmetic import functions
 from dem_cli.arithmetic.products import product
+from dem_cli.contact.gaps import STEEPEST
+from dem_cli.contact.joints import JointArrays
 from dem_cli.dynamics.frequencies import principal_directions
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import CaseError, CaseProblem
-from dem_cli.kernels.records import Joints, Watch
+from dem_cli.kernels.records import Watch
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of
 
@@ -46,20 +48,40 @@ class Rocking(NamedTuple):
     axis: np.ndarray  # of the turn by which it stands on the first of these, unit, (r,)
 
 
-def reference_block(case: Case, model: Model, joints: Joints, table: DampingTable) -> RockingBlock:
-    """The block that [damping] names, else the heaviest free one on a support. Raises CaseError where there is none."""
+def reference_block(model: Model, start: JointArrays, table: DampingTable) -> RockingBlock:
+    """The block that [damping] names, else the heaviest free one with a foot on a support.
+
+    start: joints of the undeformed structure. Raises CaseError where there is none: a block on a corner or an edge
+    turns about that alone, and does not rock.
+    """
+    joints = start.joints
     if table.block is not None:
         chosen = int(model.chosen(table.block)[0])
-        mine = np.flatnonzero((joints.blocks == chosen).any(axis=1))
-        path, what = ("damping", "block"), f"block '{table.block}' rests on nothing"
-    else:
-        held = model.fixed[joints.blocks].sum(axis=1) == 1
-        carried = joints.blocks[held][~model.fixed[joints.blocks[held]]]
-        chosen = int(carried[model.masses[carried].argmax()]) if len(carried) else -1
-        mine = np.flatnonzero((joints.blocks == chosen).any(axis=1))
-        path, what = ("damping", "restitution"), "no block rests on a support; name one (damping.block)"
+        found = _on_its_joint(model, start, chosen)
+        if found is None:
+            raise CaseError([CaseProblem(("damping", "block"), f"block '{table.block}' rests on nothing")])
+        if not _is_broad(found.foot):
+            what = (
+                f"block '{table.block}' rests on a corner, an edge or an upright face: it does not rock; name another"
+            )
+            raise CaseError([CaseProblem(("damping", "block"), what)])
+        return found
+    held = model.fixed[joints.blocks].sum(axis=1) == 1
+    carried = joints.blocks[held][~model.fixed[joints.blocks[held]]]
+    for block in dict.fromkeys(carried[np.argsort(-model.masses[carried], kind="stable")].tolist()):
+        found = _on_its_joint(model, start, block)
+        if found is not None and _is_broad(found.foot):
+            return found
+    what = "no block rests on a support" + (" with more than a corner or an edge" if len(carried) else "")
+    raise CaseError([CaseProblem(("damping", "restitution"), f"{what}; name one (damping.block)")])
+
+
+def _on_its_joint(model: Model, start: JointArrays, chosen: int) -> RockingBlock | None:
+    """A block on the lowest of its joints; None: it has none."""
+    joints, gaps = start.joints, start.contacts.gaps
+    mine = np.flatnonzero((joints.blocks == chosen).any(axis=1))
     if not len(mine):
-        raise CaseError([CaseProblem(path, what)])
+        return None
     up = model.dimension - 1
     heights = [joints.points[joints.starts[j] : joints.starts[j + 1], up].mean() for j in mine]
     joint = int(mine[int(np.argmin(heights))])
@@ -68,7 +90,20 @@ def reference_block(case: Case, model: Model, joints: Joints, table: DampingTabl
     support = b if a == chosen else a
     stiffness = float(joints.kn[points].sum())
     foot = joints.points[points] + origin_of(model) - model.centroids[chosen]
+    widest = float(np.hypot.reduce(foot - foot[gaps[points].argmin()], axis=1).max())
+    foot = foot[gaps[points] <= gaps[points].min() + STEEPEST * widest]  # others are ends of a face that leans away
     return RockingBlock(chosen, support, float(np.sqrt(stiffness / model.masses[chosen])), foot)
+
+
+def _is_broad(foot: np.ndarray) -> bool:
+    """Whether a foot is seen from above as more than a point, in space as more than a line; foot: (n, d) [m]."""
+    seen = foot[:, :-1] - foot[0, :-1]
+    lengths = np.hypot.reduce(seen, axis=1)
+    broad = float(lengths.max())
+    if seen.shape[1] == 2 and broad > 0.0:
+        x, y = seen[int(lengths.argmax())] / broad
+        broad = float(np.abs(seen[:, 1] * x - seen[:, 0] * y).max())
+    return broad > BROAD * float(np.hypot.reduce(foot, axis=1).max())
 
 
 def _in_plane(foot: np.ndarray) -> Rocking:
@@ -93,6 +128,7 @@ def _in_space(foot: np.ndarray) -> Rocking:
     return Rocking(np.array([across[first], last]), axis)
 
 
+BROAD = 1e-6  # of the distance from the centroid to a foot: below, that is a corner or an edge
 EQUAL = 1e-9  # rad: sides over which a block falls as soon; the first of them is taken
 ROCKING = {2: _in_plane, 3: _in_space}
 
@@ -108,11 +144,11 @@ def housner(model: Model, reference: RockingBlock) -> float:
 
 
 def fraction_of(
-    case: Case, model: Model, joints: Joints, table: DampingTable, settings: Settings = DEFAULT
+    case: Case, model: Model, start: JointArrays, table: DampingTable, settings: Settings = DEFAULT
 ) -> tuple[float, str]:
     """Fraction of critical that gives the wanted restitution, and words about it. Raises CaseError out of reach."""
     restitution = settings.restitution
-    reference = reference_block(case, model, joints, table)
+    reference = reference_block(model, start, table)
     rigid, name = housner(model, reference), model.block_ids[reference.block]
     wanted = table.restitution
     assert wanted is not None  # as damping_of asks

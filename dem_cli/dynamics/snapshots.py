@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.engine import measures
-from dem_cli.geometry.rotation import angles_between
+from dem_cli.geometry.rotation import largest_angle_between
 
 if TYPE_CHECKING:
     from dem_cli.dynamics.ground import GroundMotion
@@ -53,13 +53,14 @@ class Snapshots:
     wanted: as many at even times as a case asks for; None: as many as the motion needs.
     """
 
-    LASTING = frozenset(("track", "sim", "ground", "settings"))
+    LASTING = frozenset(("track", "sim", "ground", "settings", "drawn"))
 
     def __init__(self, track: Track, sim: DynamicSimulation, ground: GroundMotion, gravity: float, wanted: int | None):
         self.track, self.sim, self.ground, self.gravity = track, sim, ground, gravity
         self.settings: SnapshotSettings = sim.settings.snapshots
         self.wanted, self.stage, self.every = wanted, "shaking", 1
         self.ahead: Frame | None = None  # of the largest displacement so far, where none is kept since
+        self.drawn = sim.reference_positions[sim.free]
         self.visible = self.settings.visible * size_of(sim)
         self.room = max(self.settings.bytes // bytes_of(sim), self.settings.fewest)  # frames that may still be kept
 
@@ -106,10 +107,12 @@ class Snapshots:
             self.ahead = self._frame()
 
     def _places(self) -> np.ndarray:
-        return measures.displacements(self.sim)[self.sim.free]
+        """Displacements of the free blocks [m], (n_free, d)."""
+        sim = self.sim
+        return sim.bodies.positions.take(sim.free, axis=0) - self.drawn
 
     def _turns(self) -> np.ndarray:
-        return self.sim.bodies.orientations[self.sim.free]
+        return self.sim.bodies.orientations.take(self.sim.free, axis=0)
 
     def _swung(self, away: float) -> bool:
         """Whether a block moved or turned so far since the last snapshot that it would be lost between even times.
@@ -120,7 +123,7 @@ class Snapshots:
             return False
         if away > self.settings.swing * max(self.farthest, self.visible):
             return True
-        return angles_between(self._turns(), self.last_turns).max(initial=0.0) > self.settings.turn
+        return largest_angle_between(self._turns(), self.last_turns) > self.settings.turn
 
     def _frame(self) -> Frame:
         self.sim.show_base(self.ground.along(self.sim.time), self.gravity)
@@ -132,7 +135,7 @@ class Snapshots:
 
 
 def _largest(displacements: np.ndarray) -> float:
-    return math.sqrt((displacements**2).sum(axis=1).max(initial=0.0))
+    return math.sqrt(np.square(displacements).sum(axis=1).max(initial=0.0))
 
 
 def frequency_of(ground: GroundMotion, duration: float) -> float:

@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.arithmetic.products import product
-from dem_cli.model.scales import levels, origin_of, smallest_edge, stiffness_scale, structures
+from dem_cli.links.matrices import stiffest
+from dem_cli.model.scales import levels, mean_weight, origin_of, smallest_edge, stiffness_scale, structures
 
 if TYPE_CHECKING:
     from dem_cli.engine.settings import AutomaticStiffness
@@ -38,7 +39,9 @@ def static_ratio(model: Model, kinematics: str, stiffness: AutomaticStiffness) -
     """kn·h/W of "auto" joints of a static analysis; where geometry moves it may have to be more (`needed_ratio`).
 
     Where it is that of the start, joints only have to be stiff: a weight sinks by h/(kn·h/W), and coordinates of a
-    structure of size L tell 2e-16 L apart.
+    structure of size L tell 2e-16 L apart. Beside ties and bars they are stiff enough when these give way by far more:
+    steps are those of the joints, and a tie whose frequency is a thousandth of theirs takes a thousand times as many to
+    come to rest.
     """
     if kinematics != "fixed":
         return stiffness.statics
@@ -48,7 +51,12 @@ def static_ratio(model: Model, kinematics: str, stiffness: AutomaticStiffness) -
     )
     if size == 0.0:
         return stiffness.fixed
-    return min(stiffness.fixed, stiffness.digits * smallest_edge(model) / (np.finfo(float).eps * size))
+    ratio = min(stiffness.fixed, stiffness.digits * smallest_edge(model) / (np.finfo(float).eps * size))
+    if not model.links:
+        return ratio
+    weight = mean_weight(model.dead_loads[free], model.live_loads[free], model.dimension)
+    beside = stiffness.beside_links * stiffest(model.links) * smallest_edge(model) / weight
+    return min(ratio, max(stiffness.statics, beside))
 
 
 def needed_ratio(sim: Simulation, resolution: float | None = None) -> float:

@@ -40,7 +40,7 @@ def joint_state(sim: Simulation, instant: str) -> dict[str, Any]:
 
 
 def _beside(sim: Simulation) -> dict[str, Any]:
-    """What else holds blocks: ties and bars, and what restraints give."""
+    """Ties, bars and reactions of restraints, which hold blocks beside joints."""
     return _links(sim) | _restraints(sim)
 
 

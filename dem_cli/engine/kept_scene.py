@@ -19,11 +19,11 @@ from dem_cli.output.resume.likeness import alike
 Simulation = Any  # that of simulation.py, which imports this file
 _ROWS: dict[str, dict[str, str]] = {  # fields of records by how many rows they have; of those with "?" maybe none
     "MovingJoints": {
-        "joints": "blocks law", "points": "frames levers points kn ks", "joints?": "held integrated",
+        "joints": "blocks law", "points": "frames levers points kn ks", "joints?": "held torsion integrated",
         "points?": "after fans",
     },
     "FixedJoints": {
-        "joints": "blocks law axes anchors arms", "points": "places kn ks", "joints?": "integrated",
+        "joints": "blocks law axes anchors arms", "points": "places kn ks", "joints?": "torsion integrated",
         "points?": "after fans",
     },
     "PlanarGeometry": {"joints": "keys edges scales", "points": "features", "points?": "profile", "joints?": "sunk"},

@@ -33,7 +33,7 @@ RIGID, LINEAR, QUADRATIC = 0, 1, 2  # polynomials that displacements within a bl
 
 
 class Drifts(NamedTuple):
-    """What moves blocks, with their corners."""
+    """Kernels that move blocks, with their corners."""
 
     in_pseudo_time: Callable
     in_time: Callable  # with real masses, in seconds

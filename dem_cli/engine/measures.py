@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.contact.block_compliance import BlockCompliance
+from dem_cli.contact.corner_forces import at_corners
 from dem_cli.contact.joints import points_in_use
 from dem_cli.engine.simulation import Simulation
-from dem_cli.geometry.rotation import quaternions, rotation_vectors, turned_since, turning
+from dem_cli.geometry.rotation import frames, quaternions, rotation_vectors, turned_since, turning
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies
 from dem_cli.links.link import FIXED_POINT
@@ -21,6 +22,15 @@ from dem_cli.output.record import ContactRecord, Energy, Frame, LinkPlaces, Link
 
 ROUND_OFF = 1e-9  # of forces that cancel on a block: what is left of them is none
 NET, ALL = 0, 1  # of Contacts.exchanged
+
+
+class PointPushes(NamedTuple):
+    """Forces of contact points at one instant, and where their joints were before anything moved."""
+
+    blocks: np.ndarray  # both blocks, (n, 2) int64
+    places: np.ndarray  # where they act [m], (n, d)
+    middles: np.ndarray  # mean of the points of the same joint, as they lay in the undeformed first block [m], (n, d)
+    on_second: np.ndarray  # force on the second block [N], (n, d)
 
 
 class EnergySums(NamedTuple):
@@ -159,7 +169,7 @@ def free_falls(sim: Simulation) -> np.ndarray:
 
 
 def energy_sums(sim: Simulation) -> EnergySums:
-    """What the loads gave since the start, and what friction and joints took [J]."""
+    """Work of the loads since the start, and energy that friction and joints took [J]."""
     given = float(sim.ledger[slot.EXTERNAL])
     return EnergySums(given, float(sim.ledger[slot.FRICTION]) + sim.elastic_energy())
 
@@ -219,7 +229,7 @@ def reweighting_shares(sim: Simulation) -> tuple[float, float]:
 
 
 def _taken(e: Energy) -> float:
-    """What is lost for good [J]."""
+    """Energy that friction and all kinds of damping took [J]."""
     return e.friction + e.damping + e.dashpots + e.mass_damping + e.maxwell
 
 
@@ -239,6 +249,26 @@ def contact_points(sim: Simulation, blocks: np.ndarray) -> np.ndarray:
     return bodies.positions[blocks] + turning(bodies.orientations[blocks])(arms)
 
 
+def point_pushes(sim: Simulation) -> PointPushes:
+    """Forces of all contact points now, where the kernels let them act."""
+    joints, contacts, model = sim.joints, sim.measured(), sim.model
+    used, owner = points_in_use(joints), joints.owners
+    first = joints.blocks[owner, 0]
+    places = joints.points + sim.origin
+    drawn = places
+    if sim.kinematics == "large":
+        arms = joints.points - sim.bodies.positions[first]
+        drawn = model.centroids[first] + turning(-rotation_vectors(sim.bodies.orientations)[first])(arms)
+    counts = np.maximum(np.bincount(owner[used], minlength=len(joints.blocks)), 1)
+    middles = np.column_stack([np.bincount(owner[used], along, len(counts)) for along in drawn[used].T])
+    axes = frames(joints.frames, model.dimension)
+    forces = np.column_stack([contacts.normal, contacts.shear])
+    return PointPushes(
+        joints.blocks[owner][used], places[used], (middles / counts[:, None])[owner][used],
+        (forces[:, :, None] * axes).sum(axis=1)[used],
+    )  # fmt: skip
+
+
 def contact_record(sim: Simulation) -> ContactRecord:
     """All contact points now."""
     joints, contacts, d = sim.joints, sim.measured(), sim.model.dimension
@@ -254,7 +284,7 @@ def contact_record(sim: Simulation) -> ContactRecord:
         points=contact_points(sim, joints.blocks[owner, 0]) + sim.origin,
         normals=joints.frames[:, :d].copy(),
         normal_force=contacts.normal,
-        shear_force=contacts.shear,
+        shear_force=at_corners(joints, contacts.normal, contacts.shear),
         gap=contacts.gaps,
         slip=contacts.slip,
         state=state.astype(np.int8),

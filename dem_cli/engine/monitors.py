@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.arithmetic.products import norm, product
-from dem_cli.engine.measures import reactions
+from dem_cli.engine.measures import PointPushes, point_pushes, reactions
 from dem_cli.geometry.rotation import angles_of, beside, moments, rotation_vectors, swept, tangents_of, turning
 from dem_cli.kernels.records import NO_LINKS
 from dem_cli.links.link import N_STATE, LinkReading
@@ -22,6 +22,7 @@ from dem_cli.model.model import Model
 from dem_cli.model.places import block_at
 from dem_cli.model.quadratic_modes import moved_by_modes
 from dem_cli.model.scales import origin_of
+from dem_cli.model.section_cuts import SectionCut, drift_ends, section_cut, section_forces
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case, Monitor
@@ -104,6 +105,7 @@ class PointMonitor(NamedTuple):
     quantity: str
     component: str | None
     absolute: bool
+    along: np.ndarray | None = None  # instead of a component: the direction in which it counts, unit, (d,)
 
     def fill(self, out: np.ndarray, motion: PointMotion, base: np.ndarray) -> None:
         """Its column of out (n, n_monitors)."""
@@ -114,7 +116,10 @@ class PointMonitor(NamedTuple):
             vectors = self._mean(getattr(motion, self.quantity))
             vectors = vectors + base[:, OF_BASE[self.quantity]] if self.absolute else vectors
             length = np.linalg.norm(vectors, axis=1)
-        out[:, self.column] = length if self.component is None else vectors[:, "xyz".index(self.component)]
+        if self.along is not None:
+            out[:, self.column] = product(vectors, self.along)
+        else:
+            out[:, self.column] = length if self.component is None else vectors[:, "xyz".index(self.component)]
 
     def _mean(self, vectors: np.ndarray) -> np.ndarray:
         """Of vectors of all points (n, n_points, ...) over its own, (n, ...)."""
@@ -144,6 +149,22 @@ class ReactionMonitor(NamedTuple):
         return float(vector[0]) if len(vector) == 1 else float(norm(vector))
 
 
+class CutMonitor(NamedTuple):
+    """A force or moment that the joints along a cut carry, in the equilibrium of all beyond it."""
+
+    column: int
+    cut: SectionCut
+    quantity: str
+
+    def value(self, sim: Simulation, given: PointPushes) -> float:
+        """At this instant [N or N m]. Joints are found again where their material lay in the undeformed structure."""
+        passed = self.cut.passes(sim.model.centroids, given.blocks, given.middles)
+        beyond = self.cut.sides(sim.model.centroids)[given.blocks[:, 0]]
+        forces = np.where(beyond[:, np.newaxis], given.on_second, -given.on_second)
+        found = section_forces(self.cut, given.places[passed], forces[passed])
+        return float(getattr(found, self.quantity))
+
+
 class Monitors:
     """Values of all monitors of a case, in the order of the case file.
 
@@ -160,6 +181,7 @@ class Monitors:
         self._at_points: list[PointMonitor] = []
         self._of_links: list[tuple[int, LinkReading]] = []  # monitor, and what it reads
         self._of_reactions: list[ReactionMonitor] = []
+        self._of_cuts: list[CutMonitor] = []
         pairs: list[tuple] = []
         for column, (table, found) in enumerate(zip(self.tables, blocks, strict=True)):
             if (link := table.tie or table.bar) is not None:
@@ -168,6 +190,10 @@ class Monitors:
             elif table.of_what_holds:
                 blocks_held = model.held_among(table.selected)
                 self._of_reactions.append(ReactionMonitor(column, blocks_held, table.quantity, table.component))
+            elif table.cut is not None and table.height is None:
+                self._of_cuts.append(CutMonitor(column, section_cut(table.cut), table.quantity))
+            elif table.cut is not None:
+                self._at_points.append(self._drift_monitor(column, table, found))
             elif table.between is None:
                 self._at_points.append(self._point_monitor(column, table, found))
             else:
@@ -193,6 +219,10 @@ class Monitors:
         found = self.series(sample[np.newaxis], still, links[np.newaxis])[0]
         for monitor in self._of_reactions:
             found[monitor.column] = monitor.value(sim)
+        given = point_pushes(sim) if self._of_cuts else None
+        for cut in self._of_cuts:
+            assert given is not None
+            found[cut.column] = cut.value(sim, given)
         return tuple(found.tolist())
 
     def _strain(self, sim: Simulation) -> None:
@@ -229,6 +259,10 @@ class Monitors:
         for monitor in self.tables:
             if monitor.tie is not None or monitor.bar is not None or monitor.of_what_holds:
                 found.append(())
+            elif monitor.cut is not None:
+                ends = drift_ends(monitor.cut, monitor.height) if monitor.height is not None else []
+                blocks = [block_at(self.model, end) for end in ends]
+                found.append(tuple(block for block in blocks if block is not None))  # assembly/validate.py
             elif monitor.point is None:
                 chosen = [self.model.chosen(name, False) for name in monitor.between or (monitor.selected,)]
                 found.append(tuple(np.concatenate(chosen).tolist()))
@@ -251,6 +285,17 @@ class Monitors:
         masses = self.model.masses[list(blocks)]
         points = [self._point(block, arm) for block in blocks]
         return PointMonitor(column, points, masses / masses.sum(), table.quantity, table.component, table.absolute)
+
+    def _drift_monitor(self, column: int, table: Monitor, blocks: Sequence[int]) -> PointMonitor:
+        """Of the points at both ends of the height of a pier."""
+        assert table.cut is not None
+        assert table.height is not None
+        cut = section_cut(table.cut)
+        ends = drift_ends(table.cut, table.height)
+        arms = [end - self.model.centroids[block] for end, block in zip(ends, blocks, strict=True)]
+        points = [self._point(block, arm) for block, arm in zip(blocks, arms, strict=True)]
+        weights = np.array([-1.0, 1.0]) / table.height
+        return PointMonitor(column, points, weights, "displacement", None, False, cut.axes[1])
 
     def _pairs(self, column: int, quantity: str, first: int, second: int) -> list[tuple]:
         """Of one monitor: first and second point, distance, axis and the number of the monitor."""

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.assembly.assemble import joint_table
+from dem_cli.arithmetic.chance import lognormal_factor
+from dem_cli.assembly.assemble import joint_table, joints_in_heads
 from dem_cli.contact.block_compliance import BlockCompliance, block_compliance
 from dem_cli.contact.joints import JointProperties, LawRows
 from dem_cli.contact.layout import PointLayout
 from dem_cli.engine.settings import DEFAULT
+from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
 from dem_cli.laws.mixed import mixed, row
 from dem_cli.laws.registry import LAWS
 from dem_cli.laws.stiffness import StiffJoint
+from dem_cli.laws.strength import reduced
 from dem_cli.model.model import Model
 from dem_cli.model.scales import stiffness_scale
 
@@ -40,6 +43,7 @@ def joint_properties(
     ratio: float = DEFAULT.stiffness.statics,
     step: float = math.inf,
     lands: bool | None = None,
+    integrates: bool = True,
 ) -> JointProperties:
     """Stiffness and law parameters of each named joint; "auto" means kn·h/W = ratio, and ks = kn.
 
@@ -47,8 +51,11 @@ def joint_properties(
 
     step: time step [s] that velocities in a law refer to; infinite where time has no meaning: all motion is slow.
     lands: whether blocks land on each other, so that joints keep the points at their ends; None: in time histories.
+    integrates: whether the pressure on elastic joints is integrated over their faces, else it is sampled at points.
     """
     names, by_material = joint_table(case)
+    heads = joints_in_heads(case)
+    lying = _with_heads(model, by_material, heads)
     auto = ratio * stiffness_scale(model)
     laws = laws_of(case)
     tables = [case.joints[name] for name in names]
@@ -64,21 +71,23 @@ def joint_properties(
         intact[i, : len(values)] = values
     columns = np.stack([row(laws, _law(table), values, width) for table, values in zip(tables, rows, strict=True)])
     bending = [table.bends for table in case.materials.values()]
-    deforming = _with_deforming_blocks(model, by_material, compliance, np.flatnonzero(bending))
-    bent = set(by_material[np.flatnonzero(bending)].ravel().tolist())  # two points cannot tell how a block bends
+    deforming = _with_deforming_blocks(model, lying, compliance, np.flatnonzero(bending))
+    bent = set(lying[:, np.flatnonzero(bending)].ravel().tolist())  # two points cannot tell how a block bends
     lands = hasattr(case.analysis, "margin") if lands is None else lands
-    integrated = np.array([_integrates(table) and k not in bent for k, table in enumerate(tables)])
+    integrated = np.array([integrates and _spreads(table) and k not in bent for k, table in enumerate(tables)])
     layouts = tuple(
         None if integrated[k] and (k in deforming or table.kn != "auto")
         else _layout(table, case, k in deforming, lands and k not in bent)
         for k, table in enumerate(tables)
     )  # fmt: skip
-    rigid = free[:, 0] & _with_rigid_blocks(names, model, by_material, compliance)
-    own_rows = None if compliance is None else _own_rows(tables, laws, columns, step)
+    spread = [layout is None and _spreads(table) for layout, table in zip(layouts, tables, strict=True)]
+    rigid = free[:, 0] & _with_rigid_blocks(names, model, lying, compliance)
+    own_rows = _own_rows(tables, laws, columns, _OfEachJoint(names, step, compliance is not None, case.seed))
     law = mixed(tuple(laws))
+    spreads = np.array(spread) & (model.n_modes == 0)
     return JointProperties(
-        names, by_material, kn, ks, columns, intact, layouts, rigid, law.pressed, law.bonded, integrated, compliance,
-        own_rows,
+        names, by_material, kn, ks, columns, intact, layouts, spreads, rigid, law.pressed, law.bonded, integrated,
+        compliance, heads, own_rows,
     )  # fmt: skip
 
 
@@ -86,8 +95,8 @@ def _law(table: StiffJoint) -> Law:
     return LAWS[table.law].of(table)
 
 
-def _integrates(table: StiffJoint) -> bool:
-    """Whether the pressure on an elastic joint is integrated: a plane one, without tension or points of its own."""
+def _spreads(table: StiffJoint) -> bool:
+    """Whether pressure and friction may act over the face: nobody asked for points, and nothing bonds them."""
     return table.points is None and table.profile is None and not _law(table).bonded
 
 
@@ -101,14 +110,14 @@ def _layout(table: StiffJoint, case: Case, deforms: bool, lands: bool) -> PointL
 
 
 def _with_deforming_blocks(
-    model: Model, by_material: np.ndarray, compliance: BlockCompliance | None, bending: np.ndarray
+    model: Model, lying: np.ndarray, compliance: BlockCompliance | None, bending: np.ndarray
 ) -> set[int]:
     """Named joints that blocks may have which deform in their joints, or bend by themselves: materials of these.
 
-    Within a stone that can crack: the joint of its pieces, where these deform in it.
+    Within a stone that can crack: the joint of its pieces, where these deform in it. lying: as `_with_heads`.
     """
     lumped = [] if compliance is None else model.block_material[compliance.deforms]
-    found = set(by_material[np.concatenate([lumped, bending]).astype(int)].ravel().tolist())
+    found = set(lying[:, np.concatenate([lumped, bending]).astype(int)].ravel().tolist())
     if compliance is None or not len(model.pieces):
         return found
     within = model.pieces[compliance.deforms, 1]
@@ -116,29 +125,67 @@ def _with_deforming_blocks(
 
 
 def _with_rigid_blocks(
-    names: Sequence[str], model: Model, by_material: np.ndarray, compliance: BlockCompliance | None
+    names: Sequence[str], model: Model, lying: np.ndarray, compliance: BlockCompliance | None
 ) -> np.ndarray:
-    """Whether each named joint may lie between two blocks neither of which deforms, (n_named,) bool."""
+    """Whether each named joint may lie between two blocks neither of which deforms, (n_named,) bool.
+
+    lying: as `_with_heads`.
+    """
     if compliance is None:
         return np.ones(len(names), bool)
     stiff, free = (np.unique(model.block_material[~compliance.deforms & among]) for among in (True, ~model.fixed))
     within = model.pieces[~compliance.deforms, 1] if len(model.pieces) else model.pieces[:, 1]
-    return np.isin(np.arange(len(names)), np.append(by_material[np.ix_(stiff, free)], within))
+    return np.isin(np.arange(len(names)), np.append(lying[:, stiff[:, None], free], within))
 
 
-def _own_rows(tables: Sequence[StiffJoint], laws: Sequence[Law], columns: np.ndarray, step: float) -> LawRows | None:
-    """Rows of joints whose kn is not that of their name; None: no law hangs on it."""
-    width = columns.shape[1] - (len(laws) > 1)
-    hangs = [_columns(table, 1.0, step) != _columns(table, 2.0, step) for table in tables]
+def _with_heads(model: Model, by_material: np.ndarray, heads: np.ndarray) -> np.ndarray:
+    """Named joints between two materials: that of their beds, then that in their heads, −1: nothing; where the model
+    does not tell these apart that of both alone, (1 or 2, n_materials, n_materials).
+    """
+    return np.stack([by_material, heads[by_material]] if len(model.courses) else [by_material])
 
-    def rows(named: np.ndarray, kn: np.ndarray) -> np.ndarray:
+
+class _OfEachJoint(NamedTuple):
+    """What the rows of a law may hang on that two joints of one name need not share."""
+
+    names: tuple[str, ...]  # of the named joints
+    step: float  # time step [s] that velocities refer to
+    lumped: bool  # whether blocks deform in their joints, so that kn is that of the joint and not of its name
+    seed: int  # of the case, from which friction is drawn
+
+
+def _own_rows(
+    tables: Sequence[StiffJoint], laws: Sequence[Law], columns: np.ndarray, each: _OfEachJoint
+) -> LawRows | None:
+    """Rows of joints whose kn or friction is not that of their name; None: there are none."""
+    width, step = columns.shape[1] - (len(laws) > 1), each.step
+    hangs = [each.lumped and _columns(table, 1.0, step) != _columns(table, 2.0, step) for table in tables]
+    varies = [isinstance(table, FrictionJoint) and table.variation > 0.0 for table in tables]
+    own = np.array([a or b for a, b in zip(hangs, varies, strict=True)])
+    drawn: dict[tuple[str, ...], StiffJoint] = {}
+
+    def rows(named: np.ndarray, kn: np.ndarray, model: Model, blocks: np.ndarray) -> np.ndarray:
         found = columns[named]
-        for k in np.flatnonzero(np.array(hangs)[named]):
-            table = tables[named[k]]
+        for k in np.flatnonzero(own[named]):
+            number = int(named[k])
+            table = tables[number]
+            if isinstance(table, FrictionJoint) and varies[number]:
+                key = (each.names[number], *sorted(model.block_ids[i] for i in blocks[k]))
+                if key not in drawn:
+                    drawn[key] = _with_own_friction(table, each.seed, key)
+                table = drawn[key]
             found[k] = row(laws, _law(table), _columns(table, float(kn[k]), step), width)
         return found
 
-    return rows if any(hangs) else None
+    return rows if own.any() else None
+
+
+def _with_own_friction(table: FrictionJoint, seed: int, key: tuple[str, ...]) -> StiffJoint:
+    """The table of one joint whose friction is drawn; key: names of the joint and of both blocks.
+
+    What the law asks of its strengths among each other goes on to hold (laws/strength.py).
+    """
+    return reduced(table, 1.0 / lognormal_factor(table.variation, seed, "friction", *key), ("friction",))
 
 
 def _columns(table: StiffJoint, kn: float, step: float) -> list[float]:

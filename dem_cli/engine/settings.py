@@ -27,6 +27,7 @@ from dem_cli.engine.static_settings import (
     ProofSettings,
     SafetySettings,
     SettlementSettings,
+    StabilitySettings,
     WarmStartSettings,
 )
 from dem_cli.frozen_records import dataclass
@@ -40,7 +41,8 @@ class AutomaticStiffness:
 
     fixed: float = 1e10  # where geometry is that of the start, and stiffness drops out
     digits: float = 1e-4  # there too, a weight sinks by the last digit of a coordinate over this
-    statics: float = 1e6  # where geometry moves
+    beside_links: float = 100.0  # there too, joints over the stiffest tie or bar: both have to settle in the same steps
+    statics: float = 1e6  # where geometry moves; with ties and bars everywhere at least
     dynamics: float = 1e5  # in time histories, at least: rocking may ask for more (dynamics/rocking_stiffness.py)
     settlement_overlap: float = 1e-3  # overlap that the dead loads may cause where supports move, in smallest edges
     # Share of its load that leaning over its joints may cost a structure that moves: where failed loads are tried again
@@ -84,6 +86,8 @@ class RelaxationSettings:
 
     tolerance: float = 1e-5  # unbalanced force on any block of a claimed equilibrium, in its own weight
     gravity_tolerance: float = 1e-5  # the same under dead loads alone
+    live: float = 0.1  # of the live load on a light block, that its unbalanced force is measured by at least
+    carried: float = 1e-3  # the same of what its joints carry
     chunk: int = 100  # steps between two looks
     looks_at_rest: int = 2  # one after the other, at which forces balance: not only passed by
     most_steps: int = 40_000  # of the fast way to an equilibrium, before it is sought with combined damping
@@ -104,6 +108,7 @@ class RelaxationSettings:
     # The same where joints remember: a load put on at once swings to nearly twice its size, and cracks or crushes what
     # it would not by itself.
     ramp_of_memory: int = 100  # steps per course
+    ramp_of_links: float = 100.0  # of dead loads: periods of the heaviest block on the softest tie or bar that yields
     stair_of_memory: int = 5
     stair_of_strain: int = 1  # of blocks that swell or shrink, which else leap off each other: joints slip as they jump
 
@@ -141,7 +146,7 @@ class DoubtSettings:
     overlap: float = DOUBTFUL_OVERLAP  # in smallest edges
     reweighted: float = DOUBTFUL_REWEIGHTING  # of the energy, that went or came as the areas of contact points changed
     off_the_load: float = 0.02  # of the failure load, that the curve of the collapse may peak above or below it
-    above: float = 0.005  # of the associated load, that a failure load may lie above it
+    clamped: float = 0.02  # of the associated load, that a run with ties or bars may lie below it without a word
     lowered: float = 0.005  # of the load on stiff joints, that soft ones may change it by
     beyond: float = 0.005  # of the value, that a structure may stand beyond what limit analysis proved impossible
     buckles: float = 0.3  # of its load, that leaning over "auto" joints costs a structure; it falls by itself at 0.8
@@ -158,6 +163,7 @@ class Settings:
     relaxation: RelaxationSettings = field(default_factory=RelaxationSettings)
     relief: ReliefSettings = field(default_factory=ReliefSettings)
     proof: ProofSettings = field(default_factory=ProofSettings)
+    stability: StabilitySettings = field(default_factory=StabilitySettings)
     load_search: LoadSearchSettings = field(default_factory=LoadSearchSettings)
     warm_start: WarmStartSettings = field(default_factory=WarmStartSettings)
     post_peak: PostPeakSettings = field(default_factory=PostPeakSettings)

@@ -13,13 +13,13 @@ from dem_cli.contact.joints import JointArrays, JointGeometry, JointProperties, 
 from dem_cli.contact.start import bodies_at_rest
 from dem_cli.engine.fictitious_masses import fictitious_masses
 from dem_cli.engine.kept_scene import guard_of
-from dem_cli.engine.loads import loads_of
+from dem_cli.engine.loads import ActingForces, loads_of
 from dem_cli.engine.loops import LINEAR, QUADRATIC, RIGID, compiled_advance
 from dem_cli.engine.placement.clearances import play_of_start
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
 from dem_cli.engine.threads.crew import called_by_all, threads_wanted
-from dem_cli.engine.tracking import JointTracking
+from dem_cli.engine.tracking import Gauge, JointTracking
 from dem_cli.geometry.rotation import rotation_vectors
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
@@ -43,7 +43,7 @@ class Simulation:
 
     LASTING = frozenset((
         "settings", "model", "law", "properties", "kinematics", "shape", "following", "stages", "threads", "_scene",
-        "_loop", "_masses", "_stiff",
+        "_loop", "_masses", "_stiff", "_gauge",
     ))  # fmt: skip
 
     def __init__(
@@ -63,6 +63,7 @@ class Simulation:
         self.time = 0.0
         self._scene: tuple[Any, ...] = (None,)  # what the compiled loop is bound to
         self._loop: Callable[..., int] | None = None
+        self._gauge: Gauge | None = None  # of the present joints
         self._stiff: tuple[Any, ...] = (None,)  # joints, and the stiffness of their points
         self._masses: dict[float, np.ndarray] = {}  # inverse ones of joints that stay as they are, by their safety
         self.live_scale, self.tilting, self.safety = live_scale, tilting, relaxation.creep_safety
@@ -76,6 +77,7 @@ class Simulation:
         self.free = np.flatnonzero(~model.fixed)
         self.widths = model.shapes.widths
         self.loads = loads_of(model, live_scale, self.shape.radii, relaxation.narrowest_arm)
+        self.acting = ActingForces(self.loads, model.masses, self.free, d, relaxation.live, relaxation.carried)
         self.following = model.following if kinematics == "large" else None
         self.drawn_dead = self.loads.dead.copy()  # before any of it follows
         self.control = np.zeros(slot.N_CONTROL)
@@ -148,7 +150,9 @@ class Simulation:
 
     def measured(self) -> Contacts:
         """Contacts with the gaps of this instant; frames, levers and points of the joints follow, nothing else."""
-        return self.tracking.measured(self.bodies)
+        if self._gauge is None or not self._gauge.fits(self.tracking):
+            self._gauge = Gauge(self.tracking)
+        return self._gauge.measured(self.tracking, self.bodies)
 
     def _take_joints(self) -> None:
         """What follows from other joints: tiles, masses, and how long a compiled call may be."""
@@ -249,7 +253,7 @@ class Simulation:
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy takes along: not the compiled code that this one is bound to."""
-        return self.__dict__ | {"_scene": (None,), "_loop": None, "_stiff": (None,)}
+        return self.__dict__ | {"_scene": (None,), "_loop": None, "_stiff": (None,), "_gauge": None}
 
     def guard_of_kept(self) -> Callable[[Any], None]:
         """What looks at the state of a checkpoint that came back to it (engine/kept_scene.py)."""
@@ -352,7 +356,11 @@ class Simulation:
 
     @property
     def unbalanced(self) -> float:
-        """Largest unbalanced force of a block in the last step, over its own weight."""
+        """Largest unbalanced force of a block in the last step, over its own weight, or where others than weights act
+        over what does (engine/loads.py)."""
+        live = float(self.control[slot.LIVE_FACTOR])
+        if self.acting.count(live):
+            return self.acting.largest_share(self.bodies, self.joints, self.contacts, live)
         return float(self.control[slot.UNBALANCED])
 
     def use(self, safety: float, damping: float | None = None, change: float = 0.0) -> None:
@@ -449,7 +457,7 @@ class Simulation:
         return 0.5 * float(normal + shear + inside) + elastic_energy_of_links(self.links)
 
     def _pressed_energy(self, kn: np.ndarray) -> float:
-        """Twice that along normals where the pressure on some faces is integrated (deformation/pressed_faces.py) [J]."""
+        """Twice that along normals where some pressure is integrated (kernels/deformation/pressed_faces.py) [J]."""
         contacts, joints = self.contacts, self.joints
         whole = joints.integrated[joints.owners] == INTEGRATED
         return float(np.where(whole, -contacts.normal * contacts.gaps, contacts.normal**2 / kn).sum())

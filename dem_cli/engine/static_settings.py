@@ -17,8 +17,7 @@ class ProofSettings:
     steady: float = 1.55  # growth while time doubles that counts as steady motion
     far: float = 30.0  # in elastic displacements; walls of few courses still find equilibrium after 20
     far_per_depth: float = 0.125  # times the square of the courses: walls of 22 find it after 40, of 70 after 300
-    closing: float = 1e5  # of faces whose pressure is integrated, which close to 0.3 % of themselves before an edge carries
-    # what it can but for 0.2 %: (L/c)², as a pressed length c turns by 2 N/(kn c²)
+    closing: float = 1e4  # of integrated faces: one that is pressed over c turns by 2 N/(kn c²)
     beyond: float = 2.0  # times as far as a path reached its equilibrium at the same load, ...
     unexpected: float = 150.0  # ... elastic displacements, where a path carries more, does not say, or there is none
     in_place: float = 0.03  # of the width of a block, that such a way is at most where geometry moves, and mechanisms
@@ -26,6 +25,19 @@ class ProofSettings:
     gross: float = 0.1  # of the width of a block: no elastic motion
     turned: float = 0.05  # rad: no elastic rotation
     not_elastic: float = 10.0  # elastic displacements that gross motion is beyond, where joints are soft
+
+
+@dataclass(frozen=True)
+class StabilitySettings:
+    """Whether an equilibrium buckles: its tangent, and what blocks do that are moved a little along its shape."""
+
+    acting: float = 1e-9  # of the largest normal force: points with more carry, and count in the tangent
+    negative: float = 1e-10  # of the largest eigenvalue: what is below minus that is negative
+    turn: float = 1e-5  # rad: turn of blocks over which following loads are seen to change
+    pushed: float = 1e-5  # of the smallest edge: how far blocks are moved
+    goes_on: float = 20.0  # of that way, along the shape, where they move on
+    goes_back: float = 0.1  # and where they have come back
+    looks: int = 400  # at them
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from operator import is_
+
+import numpy as np
+
 from dem_cli.contact.assemble import build_joints
 from dem_cli.contact.geometry import NarrowPhase, geometry_of, motion_of
 from dem_cli.contact.joints import Faces, JointArrays, JointProperties
@@ -88,7 +93,8 @@ class JointTracking:
 
     def faces_within(self, bodies: Bodies, distance: float) -> Faces:
         """Pairs of faces that are nearer to each other than a distance [m], where the blocks are now."""
-        return self.narrow.find(self.model, bodies.corners, distance)
+        found = self.narrow.find(self.model, bodies.corners, distance)
+        return self.properties.acting(self.model, found)
 
     @property
     def farthest(self) -> float:
@@ -102,7 +108,7 @@ class JointTracking:
     def detect(self, bodies: Bodies) -> None:
         """New faces after large motion; memory follows the contact points."""
         old = self.arrays()
-        self.measured(bodies)  # the points of the old joints, for those that move on
+        Gauge(self).measured(self, bodies)  # the points of the old joints, for those that move on
         faces = self.faces_within(bodies, self.reach)
         new = build_joints(self.model, faces, bodies, self.properties, self.n_memory, self.chains)
         carry_memory(motion_of(self.model.dimension), old, new, self.properties)
@@ -113,9 +119,32 @@ class JointTracking:
         self.take(new)
         self.detections += 1
 
-    def measured(self, bodies: Bodies) -> Contacts:
+
+class Gauge:
+    """Gauge of the present joints: their gaps at one instant after the other, without a change of contact points.
+
+    What a compiled loop may write to is the same arrays each time: it then knows all of them from the last call.
+    """
+
+    def __init__(self, tracking: JointTracking):
+        self.of = tracking.arrays()
+        self.geometry, self.contacts = self.of.geometry.kept(), Contacts(*(a.copy() for a in self.of.contacts))
+
+    def fits(self, tracking: JointTracking) -> bool:
+        """Whether these are still the joints."""
+        return all(map(is_, self.of, tracking.arrays()))
+
+    def measured(self, tracking: JointTracking, bodies: Bodies) -> Contacts:
         """Contacts with the gaps of this instant; frames, levers and points of the joints follow, nothing else."""
-        contacts = Contacts(*(a.copy() for a in self.contacts))
-        if self.moves:
-            self.narrow.place(self.joints, self.geometry.kept(), contacts, bodies)
-        return contacts
+        if tracking.moves:
+            _copy([*self.of.geometry.kept(), *self.of.contacts], [*self.geometry, *self.contacts])
+            tracking.narrow.place(self.of.joints, self.geometry, self.contacts, bodies)
+            return Contacts(*(a.copy() for a in self.contacts))
+        return Contacts(*(a.copy() for a in self.of.contacts))
+
+
+def _copy(source: Iterable[np.ndarray], target: Iterable[np.ndarray]) -> None:
+    """Records of arrays, in place where they are not the same."""
+    for values, here in zip(source, target, strict=True):
+        if here is not values:
+            here[...] = values

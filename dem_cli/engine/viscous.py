@@ -18,7 +18,7 @@ from dem_cli.tables.damping import MaxwellElement
 
 @dataclass(frozen=True)
 class Damping:
-    """What is lost, in numbers."""
+    """Damping in numbers: of joints, of masses, local, and of Maxwell elements."""
 
     fraction: float = 0.0  # of critical, each joint at its own frequency
     stiffness: float = 0.0  # damping over stiffness of all joints [s]

@@ -74,7 +74,7 @@ def confidence_band(
 
 
 def _known(bounds: np.ndarray, levels: tuple[float, float]) -> _Known | None:
-    """What the bounds say; None where no capacity has two."""
+    """Bounds of capacities as the likelihood needs them; None where no capacity has two."""
     logs = functions.log(bounds.reshape(-1, 2))
     pairs, counts = np.unique(logs, axis=0, return_counts=True)
     weights = counts / bounds.shape[1]

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class ShakenRunResult(NamedTuple):
-    """What became of one run."""
+    """Outcome of one structure under one ground motion."""
 
     collapsed: bool | None  # before the time after the motion was over; None: it failed
     time: float | None  # of the collapse [s]

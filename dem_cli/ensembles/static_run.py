@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from dem_cli.dynamics.stability import buckles
 from dem_cli.engine import measures
 from dem_cli.engine.job import Job
 from dem_cli.engine.measures import closure
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class StaticRunResult(NamedTuple):
-    """What became of one value."""
+    """Outcome of a structure at one value of what is varied."""
 
     value: float
     stands: bool | None  # None: neither was proven
@@ -101,7 +102,7 @@ def _decided(job: Job, sim: Simulation, value: float, hopeless: bool) -> StaticR
         why,
         verdict.unbalanced,
         {"released_share_of_work": verdict.released, "growth_when_time_doubles": verdict.growth}
-        if failed and verdict.block is None
+        if failed and verdict.block is None and not verdict.buckles
         else None,
         share,
         describe(sim, before) if failed else {},
@@ -119,7 +120,7 @@ def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Ve
     """The verdict, the state before the last load was put on, and the share of the load that is on."""
     safety = sim.settings.safety
     before = sim.save()
-    verdict = stand(sim, job.budget)
+    verdict = _stable(job, sim, stand(sim, job.budget))
     track.keep("gravity")
     load = job.case.analysis.constant_load / sim.live_scale
     if verdict.state != "equilibrium" or load == 0.0:
@@ -132,7 +133,7 @@ def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Ve
     shares, at, ahead = list(safety.shares), 0.0, NOTHING_KNOWN if hopeless else unexpected(sim)
     while shares:
         share, before = shares[0], sim.save()
-        verdict = settle_or_fail(sim, share * load, job.budget, elastic * share, ahead=ahead)
+        verdict = _stable(job, sim, settle_or_fail(sim, share * load, job.budget, elastic * share, ahead=ahead))
         if verdict.state == "equilibrium":
             at = shares.pop(0)
             track.keep("loading")
@@ -142,6 +143,13 @@ def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Ve
         else:
             return verdict, before, share
     return verdict, before, at
+
+
+def _stable(job: Job, sim: Simulation, verdict: Verdict) -> Verdict:
+    """The verdict, a failure where it is an equilibrium that buckles."""
+    if verdict.state == "equilibrium" and buckles(sim, job.budget) is not None:
+        return Verdict("failure", verdict.unbalanced, buckles=True)
+    return verdict
 
 
 def _next_to_failure(job: Job, sim: Simulation, load: float, elastic: float) -> tuple[Verdict, SavedState] | None:
@@ -155,7 +163,7 @@ def _next_to_failure(job: Job, sim: Simulation, load: float, elastic: float) -> 
         return None
     start.put_into(sim)
     before = sim.save()
-    verdict = settle_or_fail(sim, load, job.budget, elastic, ahead=Ahead(start.plateau))
+    verdict = _stable(job, sim, settle_or_fail(sim, load, job.budget, elastic, ahead=Ahead(start.plateau)))
     if verdict.state == "failure" and load * sim.live_scale <= start.load:
         job.skipped.append(f"a start next to failure: it did not hold, {sim.steps - steps:,} steps")
         sim.restore(held)
@@ -173,6 +181,8 @@ def _proof(verdict: Verdict, share: float, load: float) -> str:
     where = "" if share in (0.0, 1.0) else f" at {share:g} of the load"
     if verdict.state == "equilibrium":
         return f"at rest: forces balance to {verdict.unbalanced:.1g} of each block's weight"
+    if verdict.buckles:
+        return f"it buckles{where}: forces balance, and the least push makes it go on"
     if verdict.block is not None:
         return f"'{verdict.block}' came to rest elsewhere{where}"
     under = " under its dead loads alone" if load > 0.0 and share == 0.0 else where

@@ -63,10 +63,19 @@ class ExportedCase:
 
     @property
     def left_out(self) -> list[str]:
-        """What of the case is in no export: tables, and the joints within stones that can crack."""
+        """What of the case is in no export: tables, joints within stones and in heads, friction of each joint."""
         tables = [f"[[{key}]]" for key in NOT_CARRIED if getattr(self.case, key, None)]
         joints = dict.fromkeys(block.crack for block in self.blocks if block.crack)
-        return [*tables, *(f"joint '{name}' within stones: pieces have that of their materials" for name in joints)]
+        return [
+            *tables,
+            *(f"joint '{name}' within stones: pieces have that of their materials" for name in joints),
+            *(f"joint '{name}': heads are like beds" for name, one in self.case.joints.items() if one.head),
+            *(
+                f"joint '{name}': friction is its mean everywhere"
+                for name, one in self.case.joints.items()
+                if getattr(one, "variation", 0.0)
+            ),
+        ]
 
     @property
     def deforms(self) -> bool:

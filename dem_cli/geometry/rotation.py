@@ -7,6 +7,7 @@ spins and moments (n, 1) or (n, 3): the lengths say the dimension. Kernels have 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -137,11 +138,11 @@ def leans_of(orientations: np.ndarray) -> np.ndarray:
     return 2.0 * functions.arcsin(np.clip(np.hypot(x, y), 0.0, 1.0))
 
 
-def angles_between(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """By how much each block has turned from one orientation to another [rad], (n,): in space from 0 to π."""
+def largest_angle_between(one: np.ndarray, other: np.ndarray) -> float:
+    """By how much the block that turned most has turned from one orientation to another [rad]: in space up to π."""
     if one.shape[1] == 4:
-        return 2.0 * functions.arccos(np.clip(np.abs((one * other).sum(axis=1)), 0.0, 1.0))
-    return np.linalg.norm(one - other, axis=1)
+        return 2.0 * math.acos(min(float(np.abs((one * other).sum(axis=1)).min(initial=1.0)), 1.0))
+    return math.sqrt(((one - other) ** 2).sum(axis=1).max(initial=0.0))
 
 
 def rotation_vectors(orientations: np.ndarray) -> np.ndarray:

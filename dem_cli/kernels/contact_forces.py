@@ -3,6 +3,10 @@
 Joint by joint: the motion of b against a at one anchor and its spin are worked out once in the frame of the joint; a
 point adds its place in the joint plane. Forces add up in the frame and are turned into space once. The gap is
 integrated from the closing velocity (exact for constant arms, so that the joint stiffness drops out of a failure load).
+
+In space friction acts nearer to the centre of pressure c of the step before than its point r, at c + β (r − c)
+(contact/corner_forces.py). Slides there are linear in r, and so is the moment: one slide, one spin and one moment of
+the joint know of β, and no point does.
 """
 
 from __future__ import annotations
@@ -18,9 +22,32 @@ from dem_cli.kernels.deformation.pressed_faces import share_pressure
 from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import inline, named
-from dem_cli.kernels.joint_plane import add_moment_at, moment, opening_at, seen_from, seen_outside, sliding_at, sweep
+from dem_cli.kernels.joint_plane import (
+    add_moment_at,
+    centre_of,
+    drawn_in,
+    moment,
+    opening_at,
+    seen_from,
+    seen_outside,
+    sliding_at,
+    sweep,
+    torsion_of,
+    torsion_share,
+)
 from dem_cli.kernels.records import INTEGRATED
 from dem_cli.kernels.vec import axpy, components, compose, load, load_frame, scale
+
+
+@inline
+def pressed_at(places, normals, first, last, like, like_rotation):
+    """Centre of pressure of the points from first to last of a joint, in its plane."""
+    push, twist = 0.0, scale(0.0, like_rotation)
+    for p in range(first, last):
+        point = np.uint64(p)
+        push += normals[point]
+        twist = add_moment_at(load(places, point, 0, like[1:]), normals[point], scale(0.0, like[1:]), twist)
+    return centre_of(push, twist)
 
 
 def make_contact_forces(
@@ -72,6 +99,11 @@ def make_contact_forces(
                     gaps[point] += opened
                 share_pressure(joints, contacts, number)
             whole = elastic and joints.integrated[joint] == INTEGRATED
+            share = torsion_share(joints.torsion, joint, like)
+            centre = scale(0.0, like[1:])
+            if share != 1.0:
+                centre = pressed_at(places, normals, starts[joint], starts[number + 1], like, like_rotation)
+            slides, spin = drawn_in(slides, spin, centre, share)
             push, rub, twist = 0.0, scale(0.0, like[1:]), scale(0.0, like_rotation)
             for p in range(starts[joint], starts[number + 1]):
                 point = np.uint64(p)
@@ -107,6 +139,7 @@ def make_contact_forces(
                     leverage = add_leverage(leverage, place, normal, shear)
                 if bends:
                     sums = with_force(sums, place[0], compose(frame, normal, shear, scale(0.0, like)))
+            twist = torsion_of(twist, rub, centre, share)
             force, couple = compose(frame, push, rub, scale(0.0, like)), seen_outside(frame, twist)
             torque_a, torque_b = axpy(1.0, moment(arm_a, force), couple), axpy(1.0, moment(arm_b, force), couple)
             push_apart(forces, a, b, force, torque_a, torque_b)

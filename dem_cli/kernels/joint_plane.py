@@ -10,6 +10,8 @@ from __future__ import annotations
 from dem_cli.kernels.jit import overload
 from dem_cli.kernels.vec import add_torques, axpy, components, compose, dot, load_levers, scale, turn
 
+LEAST_PUSH = 1e-250  # one over less than that may be infinite
+
 
 def sweep(spin, arm):
     """Velocity of the tip of an arm that turns: ω × arm."""
@@ -123,6 +125,78 @@ def _add_moment_at(place, normal_part, tangent_parts, start):
         start[1] + place[1] * normal_part,
         start[2] - place[0] * normal_part,
     )
+
+
+def torsion_share(torsion, joint, like):
+    """FixedJoints.torsion of a joint; in 2D there is none."""
+    return 1.0 if len(like) == 2 else torsion[joint]
+
+
+@overload(torsion_share)
+def _torsion_share(torsion, joint, like):
+    if len(like) == 2:
+        return lambda torsion, joint, like: 1.0
+    return lambda torsion, joint, like: torsion[joint]
+
+
+def centre_of(push, twist):
+    """Where a push acts in the joint plane, by its moments about the tangents; without a push the origin of places."""
+    if len(twist) == 1:
+        return (0.0,)
+    part = 1.0 / push if push > LEAST_PUSH else 0.0
+    return -part * twist[2], part * twist[1]
+
+
+@overload(centre_of)
+def _centre_of(push, twist):
+    if len(twist) == 1:
+        return lambda push, twist: (0.0,)
+
+    def in_space(push, twist):
+        part = 1.0 / push if push > LEAST_PUSH else 0.0
+        return -part * twist[2], part * twist[1]
+
+    return in_space
+
+
+def drawn_in(slide, spin, centre, share):
+    """Slide and spin by which `sliding_at` gives the slides at c + share × (r − c) for places r, c: centre."""
+    if len(spin) == 1:
+        return slide, spin
+    rest = (1.0 - share) * spin[0]
+    return (slide[0] - rest * centre[1], slide[1] + rest * centre[0]), (share * spin[0], spin[1], spin[2])
+
+
+@overload(drawn_in)
+def _drawn_in(slide, spin, centre, share):
+    if len(spin) == 1:
+        return lambda slide, spin, centre, share: (slide, spin)
+
+    def in_space(slide, spin, centre, share):
+        rest = (1.0 - share) * spin[0]
+        return (slide[0] - rest * centre[1], slide[1] + rest * centre[0]), (share * spin[0], spin[1], spin[2])
+
+    return in_space
+
+
+def torsion_of(twist, rub, centre, share):
+    """The moment of all forces of a joint, where those along it act at c + share × (r − c); twist: as if at r."""
+    if len(twist) == 1:
+        return twist
+    about = centre[0] * rub[1] - centre[1] * rub[0]
+    return share * twist[0] + (1.0 - share) * about, twist[1], twist[2]
+
+
+@overload(torsion_of)
+def _torsion_of(twist, rub, centre, share):
+    if len(twist) == 1:
+        return lambda twist, rub, centre, share: twist
+
+    def in_space(twist, rub, centre, share):
+        about = centre[0] * rub[1] - centre[1] * rub[0]
+        return share * twist[0] + (1.0 - share) * about, twist[1], twist[2]
+
+    return in_space
 
 
 def reach_of(joints, point, side, centre, like):

@@ -10,6 +10,7 @@ ROUND_OFF = 1e-13  # of the size: a corner so close to an edge is on it
 SAME = 1e-6  # of the size: corners closer to each other, or to the line between their neighbours, are none
 SHARE = 3  # column of row 2: area that belongs to a corner of an overlap that moves
 FADES = 0.05  # sine of the turn of an outline below which a corner gives area to its neighbours
+OF_LINE = 0.5  # FixedJoints.torsion of two points at the ends of a line of pressure
 HANDS = 4  # rounds in which corners that fade and lie side by side hand on what they got
 
 
@@ -82,6 +83,28 @@ def area_of(work, count):
     mx /= 3.0 * area
     my /= 3.0 * area
     return area, x0 + mx, y0 + my, polar / 6.0 - area * (mx * mx + my * my)
+
+
+@inline
+def mean_distance(work, count, x, y):
+    """Mean distance of the polygon in row 2, counter-clockwise, from a place within it: triangles in closed form.
+
+    A triangle with its apex there, its base at the distance h from u to v along it, has
+    ∫ r dA = (h (v |v| − u |u|) + h³ (asinh v/h − asinh u/h)) / 6, |u| = √(h² + u²).
+    """
+    total, area = 0.0, 0.0
+    for k in range(count):
+        m = k + 1 if k + 1 < count else 0
+        ax, ay = work[2, k, 0] - x, work[2, k, 1] - y
+        bx, by = work[2, m, 0] - x, work[2, m, 1] - y
+        length = math.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
+        h = (ax * by - ay * bx) / length
+        if h > 1e-12 * length:
+            u, v = (ax * (bx - ax) + ay * (by - ay)) / length, (bx * (bx - ax) + by * (by - ay)) / length
+            ends = v * math.sqrt(h * h + v * v) - u * math.sqrt(h * h + u * u)
+            total += h * (ends + h * h * (math.asinh(v / h) - math.asinh(u / h))) / 6.0
+            area += 0.5 * h * length
+    return total / area if area > 0.0 else 0.0
 
 
 @inline

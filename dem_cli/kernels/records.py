@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.kernels.fixed_joints import NO_FANS, NO_JOINTS, NOTHING, FixedJoints
+from dem_cli.kernels.fixed_joints import NO_JOINTS, NO_SHARES, NOTHING, FixedJoints
 
 NO_MODES = np.zeros((0, 0))
 
@@ -72,11 +72,12 @@ class MovingJoints(NamedTuple):
     kn: np.ndarray  # normal stiffness of a point [N/m], (n_points,)
     ks: np.ndarray  # shear stiffness of a point [N/m], (n_points,)
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
+    torsion: np.ndarray = NO_SHARES  # in space: as FixedJoints.torsion, (n_joints,)
     held: np.ndarray = NO_JOINTS  # in space: points that touch, n; −1 − n where geometry was just measured, (n_joints,)
     # Of elastic faces (kernels/deformation/pressed_faces.py), else empty:
     integrated: np.ndarray = NOTHING  # 1: pressure is integrated over the face, (n_joints,) int8
     after: np.ndarray = NO_JOINTS  # in space: the point that follows along the outline, (n_points,)
-    fans: np.ndarray = NO_FANS  # and the share of the area between both and their mean, (n_points,)
+    fans: np.ndarray = NO_SHARES  # and the share of the area between both and their mean, (n_points,)
 
     @property
     def owners(self) -> np.ndarray:
@@ -84,8 +85,9 @@ class MovingJoints(NamedTuple):
         return np.repeat(np.arange(len(self.blocks)), np.diff(self.starts))
 
     def kept(self) -> MovingJoints:
-        """The same with a copy of what changes as blocks move in space: the stiffness of points, and outlines."""
-        return self._replace(kn=self.kn.copy(), ks=self.ks.copy(), after=self.after.copy(), fans=self.fans.copy())
+        """The same with a copy of what changes as blocks move in space: stiffness of points, torsion, outlines."""
+        names = ("kn", "ks", "torsion", "after", "fans")
+        return self._replace(**{name: getattr(self, name).copy() for name in names})
 
 
 # What both have in common: blocks, starts, owners, frames, levers, points, kn, ks, law.
@@ -179,7 +181,7 @@ class SpatialMotion(NamedTuple):
     markers: np.ndarray  # two corners of face b in the frame of block a, at the last renewal [m], (n_joints, 6)
     apart: np.ndarray  # from centroid b to a when geometry was measured that may be held, else nan [m], (n_joints, 3)
     opened: np.ndarray  # by how much a point opened since the step before it was measured [m], (n_points,)
-    scales: np.ndarray  # columns as in spatial_points.py, (n_joints, 9)
+    scales: np.ndarray  # columns as in spatial_points.py, (n_joints, 10)
     edges: (
         np.ndarray
     )  # of joints of two edges: corners of that of a and of that of b, sign of the normal; −1: none, (n, 5)
@@ -235,7 +237,7 @@ class Contacts(NamedTuple):
     )  # elastic energy that went with areas that changed [J]: net (negative: made), sum of amounts, (2,)
     jolts: np.ndarray  # work of the present call by `contact_point.jolt` [J], (1,)
     lumped: np.ndarray = (
-        NO_FANS  # gaps at which the points of elastic faces carry what they do [m], (n_points,); empty:
+        NO_SHARES  # gaps at which the points of elastic faces carry what they do [m], (n_points,); empty:
     )
     # there are none (kernels/deformation/pressed_faces.py)
 

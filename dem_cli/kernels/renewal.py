@@ -15,7 +15,7 @@ from dem_cli.kernels.jit import always_inline, kernel
 from dem_cli.kernels.records import CROSSING, EDGES, FACES, FIXED_TO_B, INTEGRATED
 from dem_cli.kernels.separation import minus3, row3
 from dem_cli.kernels.spatial_features import NONE, carried3, feature_of, frame_of, on_cap, tangents3, turned_back3
-from dem_cli.kernels.spatial_points import KN, KS, MOVED, SIZE, in_faces, of_edges, on_rim
+from dem_cli.kernels.spatial_points import KN, KS, MOVED, SIZE, SPREAD, in_faces, of_edges, on_rim, torsion_now
 from dem_cli.kernels.vec import axpy, dot
 
 # Columns of SpatialMotion.numbers beyond area, share and arm: what a new point has from the nearest one before.
@@ -224,6 +224,8 @@ def _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     frame, along = frame_of(geometry, bodies, joint, a, b)
     first, last = joints.starts[joint], joints.starts[joint + 1]
     count = min(_found(geometry, bodies, joint, (a, b), frame, along, last - first), last - first)
+    if geometry.scales[joint, SPREAD] > 0.0:
+        joints.torsion[joint] = torsion_now(geometry, joint, count)
     before, after = 0.0, 0.0
     whole = joints.integrated.shape[0] > 0 and joints.integrated[joint] == INTEGRATED
     for point in range(first, last):

@@ -17,7 +17,7 @@ from dem_cli.kernels.deformation.matrices import load_matrix, times
 from dem_cli.kernels.deformation.pressed_faces import fan_out, share_pressure
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
-from dem_cli.kernels.joint_plane import moment, sweep
+from dem_cli.kernels.joint_plane import LEAST_PUSH, moment, sweep
 from dem_cli.kernels.records import FACES, INTEGRATED
 from dem_cli.kernels.renewal import MOST_LEFT, is_due, renew
 from dem_cli.kernels.separation import minus3, row3
@@ -80,6 +80,24 @@ def _keeps(geometry, bodies, joint, a, b):
     return dot(moved, moved) <= far * far
 
 
+@inline
+def pressed_in_space(places, normals, stiffness, first, last, like):
+    """Centre of pressure of the points from first to last of a joint [m]; where none press, that of an even one."""
+    push, centre = 0.0, scale(0.0, like)
+    for p in range(first, last):
+        point = np.uint64(p)
+        push += normals[point]
+        centre = axpy(normals[point], load(places, point, 0, like), centre)
+    if push > LEAST_PUSH:
+        return scale(1.0 / push, centre)
+    push, centre = LEAST_PUSH, scale(0.0, like)
+    for p in range(first, last):
+        point = np.uint64(p)
+        push += stiffness[point]
+        centre = axpy(stiffness[point], load(places, point, 0, like), centre)
+    return scale(1.0 / push, centre)
+
+
 def make_spatial_forces(
     law: Callable,
     bonded: bool = False,
@@ -135,6 +153,12 @@ def make_spatial_forces(
                 else:
                     fan_out(joints, number)
                 share_pressure(joints, contacts, number)
+            share, rub, middle, centre = joints.torsion[joint], scale(0.0, like), scale(0.0, like), xa
+            if share != 1.0:
+                centre = pressed_in_space(places, normals, stiffness, starts[joint], starts[number + 1], like)
+                arm_a, arm_b = axpy(-1.0, xa, centre), axpy(-1.0, xb, centre)
+                middle = axpy(1.0, axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b)), relative)
+                middle = scale(1.0 - share, middle)
             n_loaded, n_touch = 0, 0
             for p in range(starts[joint], starts[number + 1]):
                 point = np.uint64(p)
@@ -164,7 +188,8 @@ def make_spatial_forces(
                 if not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
                 n_loaded += 1
-                slide = (dt * dot(moved, frame[1]), dt * dot(moved, frame[2]))
+                slid = axpy(share, moved, middle)
+                slide = (dt * dot(slid, frame[1]), dt * dot(slid, frame[2]))
                 before = normals[point]
                 pressed, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
                 if books and whole:
@@ -174,13 +199,19 @@ def make_spatial_forces(
                 n_touch += 1 if pressed != 0.0 else 0
                 lost += work
                 pushed = compose(frame, pressed, shear, scale(0.0, like))
-                force = axpy(1.0, pushed, force)
-                torque_a = axpy(1.0, moment(arm_a, pushed), torque_a)
-                torque_b = axpy(1.0, moment(arm_b, pushed), torque_b)
+                rubbed = axpy(shear[1], frame[2], scale(shear[0], frame[1]))
+                turning = axpy(share - 1.0, rubbed, pushed)
+                force, rub = axpy(1.0, pushed, force), axpy(1.0, rubbed, rub)
+                torque_a = axpy(1.0, moment(arm_a, turning), torque_a)
+                torque_b = axpy(1.0, moment(arm_b, turning), torque_b)
                 if strains:
                     stretch_apart(bodies.dyads, a, b, pushed, arm_a, arm_b)
             if meets:
                 joints.held[joint] = n_touch if held else -1 - n_touch
+            if share != 1.0 and n_loaded > 0:
+                rub = scale(1.0 - share, rub)
+                torque_a = axpy(1.0, moment(axpy(-1.0, xa, centre), rub), torque_a)
+                torque_b = axpy(1.0, moment(axpy(-1.0, xb, centre), rub), torque_b)
             if n_loaded > 0:
                 push_apart(forces, a, b, force, torque_a, torque_b)
         if books:

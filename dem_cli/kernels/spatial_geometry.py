@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from dem_cli.kernels.jit import inline, kernel
-from dem_cli.kernels.overlap import SAME, area_of, clip, share_area, simplify
+from dem_cli.kernels.overlap import OF_LINE, SAME, area_of, clip, mean_distance, share_area, simplify
 from dem_cli.kernels.records import EDGES, FACES, RIM_OF_A, RIM_OF_B
 from dem_cli.kernels.separation import NO_EDGE, cross3, minus3, row3, separate, unit3
 from dem_cli.kernels.vec import axpy, dot
@@ -23,6 +23,7 @@ BESIDE = 0.8  # cosine: the normal of a crossing is nearer than that to the one 
 
 MARGIN, AREA, GAP, POLAR = 0, 1, 2, 3  # columns of `measures`
 CENTRE = 4  # and the next two
+TORSION = 7
 
 
 @inline
@@ -152,6 +153,12 @@ def _face_joint(solids, face_a, face_b, size, work, out, joint, first):
             _put(places, k, axpy(dot(minus3(anchor, place), normal), normal, place))
         centre = axpy(dot(minus3(anchor, centre), normal), normal, centre)
     measures[joint, MARGIN], measures[joint, AREA], measures[joint, POLAR] = margin, area, polar
+    distance, weight = 0.0, 0.0
+    for k in range(count):
+        own = weights[first + k]
+        distance += own * math.sqrt((work[2, k, 0] - gx) ** 2 + (work[2, k, 1] - gy) ** 2)
+        weight += own
+    measures[joint, TORSION] = min(mean_distance(work, count, gx, gy) * weight / distance, 1.0)
     measures[joint, GAP] = rise + (slope_b[0] - slope_a[0]) * gx + (slope_b[1] - slope_a[1]) * gy
     measures[joint, GAP] *= upright
     measures[joint, CENTRE], measures[joint, CENTRE + 1], measures[joint, CENTRE + 2] = centre
@@ -262,7 +269,7 @@ def _rim_joint(solids, face, other, sign, size, work, out, joint, first):
         gaps[first + k], features[first + k], weights[first + k] = height + share * rise, k, 1.0
         place = axpy(y0 + share * dy, t2, axpy(x0 + share * dx, t1, origin))
         _put(places, first + k, axpy(0.5 * nearest, n, place))
-    measures[joint, GAP] = nearest
+    measures[joint, GAP], measures[joint, TORSION] = nearest, OF_LINE if n_points == 2 else 1.0
     normal = (sign * n[0], sign * n[1], sign * n[2])
     _put_frame(frames, joint, normal, first_tangent(solids, face, normal))
     return n_points
@@ -321,7 +328,7 @@ def _edge_joint(solids, face_a, edges, axis, crossing, out, joint, first):
     gap = dot(minus3(on_b, on_a), axis)
     _put(places, first, axpy(0.5, minus3(on_b, on_a), on_a))
     gaps[first], features[first], weights[first] = gap, 0, 1.0
-    measures[joint, MARGIN], measures[joint, GAP] = margin, gap
+    measures[joint, MARGIN], measures[joint, GAP], measures[joint, TORSION] = margin, gap, 1.0
     along = unit3(u)
     t1 = axpy(-dot(along, axis), axis, along)
     length = math.sqrt(dot(t1, t1))
@@ -361,7 +368,8 @@ def describe(solids, parts, faces, starts, work, out, kinds_out, counts_out):
 
     starts: room for the points of each, (n + 1,): as many as both faces have corners; work: (5, room of one pair, 3).
     out: frames (n, 9); and in the room of each pair places (3 columns), weights [m² or 1], gaps [m], features; measures
-    (n, 7): how far the contact reaches [m], area, gap at the centroid, polar moment, centroid.
+    (n, 8): how far the contact reaches [m], area, gap at the centroid, polar moment, centroid, torsion
+    (contact/corner_forces.py).
     """
     for joint in range(parts.shape[0]):
         pair_of_faces = (faces[joint, 0], faces[joint, 1])

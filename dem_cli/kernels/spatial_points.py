@@ -14,7 +14,19 @@ from __future__ import annotations
 import math
 
 from dem_cli.kernels.jit import always_inline, kernel
-from dem_cli.kernels.overlap import ROUND_OFF, SAME, SHARE, area_of, clip, fading_areas, held_inside, simplify, tilted
+from dem_cli.kernels.overlap import (
+    OF_LINE,
+    ROUND_OFF,
+    SAME,
+    SHARE,
+    area_of,
+    clip,
+    fading_areas,
+    held_inside,
+    mean_distance,
+    simplify,
+    tilted,
+)
 from dem_cli.kernels.records import CORNER_OF_A, CORNER_OF_B, CROSSING, EDGES, FACES, FIXED_TO_B, RIM_OF_A, RIM_OF_B
 from dem_cli.kernels.separation import NO_EDGE, cross3, minus3, row3, separate, unit3
 from dem_cli.kernels.spatial_features import NONE, carried3, carried_back3, height_inside, tangents3
@@ -30,6 +42,7 @@ FLOOR = 5  # area of a face joint, at least [m²]
 REACH = 6  # how high features outside of face joints may lie over the face [m]
 CENTRED = 7  # 1: face joints have a point at their centroid as well
 OWN = 8  # share of the area that corners have where points of a rule lie within; 0: there are none
+SPREAD = 9  # 1: friction has the torsion of a spread pressure (contact/corner_forces.py)
 
 MOVED = 1e-3  # of SIZE: motion along the joint after which it is renewed
 SLIVER = 1e-6  # of FLOOR: overlaps below it are none; tips sink unseen by about its root
@@ -58,6 +71,23 @@ def _corner_of(geometry, face, k, turned):
     count = geometry.face_starts[face + 1] - first
     k %= count
     return geometry.face_corners[first + (count - 1 - k if turned else k)]
+
+
+@always_inline
+def torsion_now(geometry, joint, count):
+    """As FixedJoints.torsion, of the points that were just found."""
+    kind, work = geometry.kinds[joint], geometry.work
+    if kind != FACES:
+        return OF_LINE if kind != EDGES and count == 2 else 1.0
+    if count < 3:
+        return 1.0
+    area, gx, gy, _ = area_of(work, count)
+    distance, weight = 0.0, 0.0
+    for k in range(count):
+        x, y = work[2, k, 0] - gx, work[2, k, 1] - gy
+        distance += work[2, k, SHARE] * math.sqrt(x * x + y * y)
+        weight += work[2, k, SHARE]
+    return min(mean_distance(work, count, gx, gy) * weight / distance, 1.0) if area > 0.0 else 1.0
 
 
 @always_inline

@@ -20,6 +20,16 @@ class FrictionJoint(StiffJoint):
         default=None, ge=0.0, lt=90.0, description="friction angle φ [deg], instead of friction", examples=[31.0]
     )
 
+    variation: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=1.0,
+        description="coefficient of variation of the friction from joint to joint [-]: the joint of each two blocks "
+        "has its own, drawn log-normally with the given mean from `seed` and the names of the blocks; residual and "
+        "dynamic friction go along",
+        examples=[0.15],
+    )
+
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:
         if (self.friction is None) == (self.friction_angle_deg is None):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem
+from dem_cli.case.base import CaseModel, KeyProblem, Name
 from dem_cli.laws.profile import Profile
 
 # Contact points of a plane joint whose stiffness is a property, by dimension; in 3D along each side. With points at its
@@ -40,6 +40,13 @@ class StiffJoint(CaseModel):
         "3D 3, where kn is given or blocks deform (materials.NAME.young) in analyses without time; where the joint can "
         "crack 5, where it is elastic 3, in 3D vertices+centre",
         examples=[5],
+    )
+
+    head: Name | None = Field(
+        default=None,
+        description="the joint, by its name in [joints], between blocks side by side in one course; 'none': such head "
+        "joints are not filled, and nothing acts between these blocks however they move; default: like all others",
+        examples=["perpend"],
     )
 
     @model_validator(mode="after")

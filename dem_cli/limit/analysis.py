@@ -11,7 +11,7 @@ import numpy as np
 from dem_cli.contact.gaps import gap_words, gaps_of_start
 from dem_cli.contact.geometry import geometry_of
 from dem_cli.contact.joints import JointProperties, only_points
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.contact.start import TOUCHING_GAP, bodies_at_rest, joints_of_start
 from dem_cli.errors import UsageError
 from dem_cli.laws.law import Law
 from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load, slides, work_of_friction
@@ -22,6 +22,7 @@ from dem_cli.model.model import Model
 from dem_cli.model.scales import largest_structure, smallest_edge
 
 if TYPE_CHECKING:
+    from dem_cli.kernels.records import Bodies, Joints
     from dem_cli.laws.envelope import Envelope
     from dem_cli.limit.least import LeastLoad
     from dem_cli.limit.path import Path
@@ -223,17 +224,59 @@ def gaps_left_open(model: Model) -> str | None:
     return f"limit analysis closes no gaps: {gap_words(model, gaps)}" if len(gaps.widths) else None
 
 
-def start_structure(model: Model, properties: JointProperties, law: Law | None = None) -> Structure:
-    """The structure with the joints of its first place, all of them plane.
+def start_structure(
+    model: Model,
+    properties: JointProperties,
+    law: Law | None = None,
+    bodies: Bodies | None = None,
+    near: float = TOUCHING_GAP,
+) -> Structure:
+    """The structure with the joints of its first place, all of them plane, or of where blocks have moved to.
 
     Points at their ends are enough for joints with friction alone; where tension, cohesion or crushing of the `law` are
     shared among points, these are those of the DEM joint, so that both are the same joint. Points that are open carry
     nothing: where only a corner touches a face, the other end is far from anything.
+
+    bodies: where the blocks are; None: where they start. near: gap or overlap of faces that touch, in smallest edges.
     """
     shared = law is not None and law.bonded
     plane = (layout if shared and layout and layout.sides is None else None for layout in properties.layouts)
     properties = properties._replace(layouts=tuple(plane))
-    built = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model))
+    bodies = bodies_at_rest(model) if bodies is None else bodies
+    built = joints_of_start(model, bodies, properties, smallest_edge(model), near=near)
     closed = built.contacts.gaps <= 0.0
     bonds = geometry_of(model.dimension).bonds(model, built.geometry)[built.joints.owners]
     return structure_of(model, only_points(built.joints, closed), bonds[closed])
+
+
+def load_where_it_rests(
+    model: Model,
+    properties: JointProperties,
+    law: Law,
+    bodies: Bodies,
+    touch: tuple[float, float],
+    settings: LimitSettings = DEFAULT_LIMIT,
+) -> LimitLoad:
+    """The associated load of blocks that have moved, on joints as drawn from where they are now.
+
+    model: with the loads that act there; bodies: as for `start_structure`; touch: gaps or overlaps of faces that touch
+    in any case, and at most [m]. Blocks that have turned touch with corners: faces touch up to the smallest gap with
+    which they carry the dead loads. Raises UsageError as `limit_loads`.
+    """
+    smallest = smallest_edge(model)
+    near, most = (max(TOUCHING_GAP, reach / smallest) for reach in touch)
+    while True:
+        structure = start_structure(model, properties, law, bodies, near)
+        strength = envelope_of(structure.joints, law, bonds=structure.bonds)
+        found = limit_load(structure, strength, settings.associated)
+        if found.upper is not None or near >= most:
+            return found
+        near = min(10.0 * near, most)
+
+
+def load_of_points(
+    model: Model, joints: Joints, closed: np.ndarray, law: Law, settings: LimitSettings = DEFAULT_LIMIT
+) -> LimitLoad:
+    """The associated load on some points of the joints of the start; closed: which ones carry, (n_points,) bool."""
+    among = only_points(joints, closed)
+    return limit_load(structure_of(model, among), envelope_of(among, law), settings.associated)

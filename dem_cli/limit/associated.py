@@ -84,6 +84,27 @@ def slides(
     return found.upper is None or bool(taken > settings.slides * abs(found.upper))
 
 
+def sliding_share(
+    friction: np.ndarray, found: LimitLoad, settings: AssociatedSettings = DEFAULT_LIMIT.associated
+) -> float:
+    """What friction can take at most in any mechanism of a load that was found, over the load; infinite: not known.
+
+    In a mechanism whose work is the load the forces r that were found do no more than their gap: Σ r·w ≤ gap. Inside
+    the cone, where slip s opens by μ s at least, r·w ≥ (μN − |T|) s, so that friction takes μN s ≤ gap μN/(μN − |T|):
+    where no point that carries anything is at the edge of its cone, no mechanism slides. That is more than `slides`
+    says, which looks at one mechanism.
+
+    friction: coefficient of every point [-], (n_points,)
+    """
+    if found.gap is None or not len(found.normal):
+        return float("inf")
+    carries = (friction > 0.0) & (found.normal > settings.carries * float(found.normal.max()))
+    limit, shear = (friction * found.normal)[carries], np.linalg.norm(found.shear[carries], axis=1)
+    left = (limit - shear) / limit
+    least = float(left.min(initial=1.0))
+    return max(found.gap, settings.least_gap) / least if least > 0.0 else float("inf")
+
+
 def work_of_friction(structure: Structure, friction: np.ndarray, found: LimitLoad) -> np.ndarray:
     """What friction takes at every point in the mechanism of a load that was found [N m], (n_points,)."""
     motion = structure.compatibility @ found.velocities.ravel()[structure.free]

@@ -40,7 +40,7 @@ class CollapseState(NamedTuple):
 
 
 class StateSearch(NamedTuple):
-    """What one search came to."""
+    """Outcome of one search for a state of collapse."""
 
     state: CollapseState | None
     proved: float  # below it there is no state among those searched, as users know it; inf: there is none at all

@@ -6,6 +6,9 @@ In units of a mean block weight W and of W over a median joint stiffness. For ev
     c = c(μN, T) ∈ K,  a ∈ K,                   c ∘ a = 0      reserve of friction, slip (plastic) in this increment
     Bt (u − u₀) = −(T − T₀)/ks + γ(a)                          slide: elastic and plastic part
 
+In space friction acts nearer to the centre of pressure of its joint than its point (contact/corner_forces.py): Bt is
+that of the normal forces at the begin of the increment, which are those at its end where the load grows no more.
+
 with the cones K of limit.slips, equilibrium Bᵀ(N, T) + dead + λ live = 0 and live·u = D. The bound μN moves with N
 inside Newton's iteration, so that the law is the real, non-associated one; the matrix is not symmetric.
 """
@@ -16,9 +19,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import vstack
+from scipy.sparse import csr_matrix, diags, vstack
 
 from dem_cli.contact.compatibility import free_columns, relative_motion
+from dem_cli.kernels.records import Joints
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.newton_matrix import FrontFactors, NewtonMatrix, PointRows
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings, PathSettings
@@ -112,6 +116,7 @@ class Elastic:
         self.order = order = self.matrix.order
         motion = vstack([scaled[k::d] for k in range(d)])[:, order]  # openings, then slides as shear is numbered
         self.motion, self.pull = motion.tocsr(), motion.T.tocsr()
+        self.drawn = DrawnFriction(self, joints) if d == 3 and (joints.torsion != 1.0).any() else None
         self.columns, self.dead, self.live, self.own = (
             values[order] for values in (self.columns, self.dead, self.live, self.own)
         )
@@ -126,6 +131,11 @@ class Elastic:
     def n_points(self) -> int:
         """Number of contact points."""
         return len(self.kn)
+
+    def draw_in(self, normal: np.ndarray) -> None:
+        """Friction acts by the centres of pressure of these normal forces from now on."""
+        if self.drawn is not None:
+            self.drawn.follow(normal)
 
     def opened(self, displacements: np.ndarray) -> np.ndarray:
         """How far joints open by displacements of the free degrees of freedom, (n_points,)."""
@@ -161,8 +171,42 @@ class Elastic:
 
     def residual(self, state: State, before: State) -> float:
         """Largest unbalanced force, in own weights, of the forces that the joint law gives for the displacements."""
+        self.draw_in(before.normal)
         normal = np.maximum(-self.kn * (self.opened(state.displacements) + self.gaps), 0.0)
         trial = before.shear - self.ks_t * self.slid(state.displacements - before.displacements)
         shear = self.slips.limited(trial, self.friction * normal)
         unbalanced = self.imbalance(normal, shear, state.load)
         return float((np.abs(unbalanced) / self.own).max(initial=0.0))
+
+
+class DrawnFriction:
+    """Friction of points in space at c + β (r − c), c: centre of pressure of the joint (contact/corner_forces.py).
+
+    Slides there are β times those of the points and 1 − β times their mean by normal forces, as these are linear in r.
+    """
+
+    def __init__(self, problem: Elastic, joints: Joints) -> None:
+        self.problem, self.normal = problem, np.zeros(0)  # of no point: none are followed yet
+        _, self.joint = np.unique(joints.owners, return_inverse=True)
+        self.share = joints.torsion[joints.owners]
+        n, matrix = problem.n_points, problem.matrix
+        self.rows = matrix.rows.copy()
+        self.motion = [problem.motion[k * n : (k + 1) * n] for k in range(problem.dimension)]
+
+    def follow(self, normal: np.ndarray) -> None:
+        """Motions of the problem, and the rows of its matrix, by these normal forces (n_points,)."""
+        if normal is self.normal:
+            return
+        self.normal, problem = normal, self.problem
+        pressed = np.bincount(self.joint, normal)[self.joint]
+        counts = np.bincount(self.joint)[self.joint]
+        parts = np.where(pressed > 0.0, normal / np.where(pressed > 0.0, pressed, 1.0), 1.0 / counts)
+        n, points = problem.n_points, np.arange(problem.n_points)
+        mean = csr_matrix((parts, (self.joint, points)))
+        own, rest = diags(self.share), diags(1.0 - self.share)
+        slides = [(own @ each + rest @ (mean @ each)[self.joint]).tocsr() for each in self.motion[1:]]
+        problem.motion = vstack([self.motion[0], *slides]).tocsr()
+        problem.pull = problem.motion.T.tocsr()
+        along = self.rows[:, 1:].reshape(n, -1)
+        drawn = self.share[:, None] * along + (1.0 - self.share)[:, None] * (mean @ along)[self.joint]
+        problem.matrix.rows[:, 1:] = drawn.reshape(self.rows[:, 1:].shape)

@@ -38,7 +38,7 @@ def _add_scaled(total, to, factor, rows, p, come):
 
 @inline
 def _add_part(values, part, left, right):
-    """What one point adds to the part of two blocks."""
+    """Adds the share of one contact point to the matrix of its two blocks."""
     d, n_dof = left.shape
     for e in range(n_dof):
         at = part[0] + e * part[1]
@@ -92,7 +92,7 @@ def _add_to_row(total, factor, row):
 
 @inline
 def _add_point(part, left, pushed):
-    """What one point adds to the part of its joint."""
+    """Adds the share of one contact point to the matrix of its joint."""
     normal, one, two = pushed[0], pushed[1], pushed[2]
     for e in range(part.shape[0]):
         row = part[e]
@@ -103,7 +103,7 @@ def _add_point(part, left, pushed):
 
 @inline
 def _put_part(values, where, part, a, b):
-    """What one joint adds to the part of two blocks."""
+    """Adds the share of one joint to the matrix of its two blocks."""
     n_dof = part.shape[0] // 2
     for e in range(n_dof):
         at, row = where[0] + e * where[1], part[a * n_dof + e]

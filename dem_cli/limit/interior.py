@@ -72,6 +72,7 @@ class Increment:
         self.problem, self.before, self.displacement, self.target = problem, before, displacement, load
         self.settings = problem.settings.of_increment(problem.dimension)
         self.end = (self.settings.end if end is None else end) * problem.lightest
+        problem.draw_in(before.normal)
         self.gaps = problem.opened(before.displacements) + problem.gaps  # before, where joints have no stiffness
         self.last: Iterate | None = None  # of what was solved
 
@@ -119,6 +120,7 @@ class Increment:
     ) -> State | None:
         """tau: of the first step, which goes straight to the equations; None: they are satisfied."""
         settings, course, length = self.settings, Course(self.settings), 1.0
+        self.problem.draw_in(self.before.normal)
         while not stop():
             mean, infeasible = float(self.problem.slips.products(at.x).mean()), self._residuals(at)
             if infeasible < settings.tolerance and mean <= settings.at_end * self.end:

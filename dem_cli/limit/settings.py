@@ -113,6 +113,8 @@ class AssociatedSettings:
     nothing: float = 1e-3  # live over dead loads, below which bounds are compared with this
     proof: float = 1e-6  # relative error accepted in a proof that something is impossible
     slides: float = 1e-3  # share of friction in the work of a mechanism, below which nothing slides in it
+    carries: float = 1e-6  # of the largest normal force: a point with less carries nothing
+    least_gap: float = 1e-9  # of the bounds, relative: what round-off leaves of smaller ones
     # Degrees of freedom up to which the cone program is factorised column by column, beyond in supernodes. The ratio of
     # CPU seconds in space was 0.64 to 0.94 for 500 to 1,500 blocks, 0.95 and 1.34 for 2,000, 1.31 for 3,000, of walls,
     # vaults and houses: supernodes do more at a time, but are ordered with a quarter more entries.

@@ -178,6 +178,10 @@ class Bars(NamedTuple):
         behind = np.cumsum(self.limits[begin:end][::-1])[::-1][at - begin - number]
         return np.minimum(np.minimum(before + anchors[0], behind + anchors[1]), self.limits[n + at])
 
+    def yields(self) -> bool:
+        """Whether any yields, or slides in its bond."""
+        return bool(np.isfinite(self.limits).any())
+
     def softest(self) -> float:
         """Least stiffness of a joint that opens, by its bar alone [N/m]."""
         return float(self._own_stiffness().min(initial=np.inf))

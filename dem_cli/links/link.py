@@ -87,6 +87,9 @@ class LinkArrays(Protocol):
     def bounded(self) -> tuple[Springs, np.ndarray]:
         """For limit analysis: forces where they were drawn, with the least and largest of each [N], (n, 2)."""
 
+    def yields(self) -> bool:
+        """Whether the forces of any have limits at which it stretches or slides for good."""
+
     def softest(self) -> float:
         """Stiffness of the softest [N/m]."""
 

@@ -90,6 +90,11 @@ def softest(links: Iterable[LinkArrays]) -> float:
     return min((link.softest() for link in links), default=np.inf)
 
 
+def stiffest(links: Iterable[LinkArrays]) -> float:
+    """The largest stiffness along any link [N/m]; 0: there is none."""
+    return max((float(link.axial().stiffness.max(initial=0.0)) for link in links), default=0.0)
+
+
 def reading_of(links: Iterable[LinkArrays], number: int, quantity: str, at: float) -> LinkReading:
     """What a monitor reads of the link of this number among all, in the rows of all states one behind another."""
     rows = 0

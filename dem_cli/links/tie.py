@@ -174,6 +174,10 @@ class Ties(NamedTuple):
         """For limit analysis: ties as they were drawn, least and largest force of each [N]."""
         return self.axial(), self.limits
 
+    def yields(self) -> bool:
+        """Whether the force of any has a largest value."""
+        return bool(np.isfinite(self.limits[:, 1]).any())
+
     def softest(self) -> float:
         """Stiffness of the softest [N/m]."""
         return float(self.stiffness.min(initial=np.inf))

@@ -19,6 +19,8 @@ class Block:
     parts      convex pieces that move as one: in the plane (n, 2) arrays of corners [m], counter-clockwise; in space
                polyhedra
     course     number of the course that it is laid in, from 1 at the foot; 0: in none
+    row        where a course has several blocks side by side across it, in which it is: the leaf of a wall, the side of
+               a crown; empty: through all of them
     thickness  depth out of plane [m]; in space 1
     across     of a generated block, that is drawn in a plane: from where to where it goes square to that in space [m];
                None: half the thickness to either side
@@ -34,6 +36,7 @@ class Block:
     fixed: bool = False
     across: tuple[float, float] | None = None
     course: int = 0
+    row: str = ""
     mass: float | None = None
     crack: str = ""
     path: KeyPath = field(default=(), compare=False)

@@ -29,7 +29,7 @@ NONE = np.zeros(0, np.int64)
 NO_AXES = np.zeros((0, 4))
 NO_MODES = np.zeros((0, 0))
 NO_RESTRAINTS = np.zeros((0, 0), bool)
-NO_PIECES = np.zeros((0, 2), np.int64)
+NO_PIECES = NO_COURSES = np.zeros((0, 2), np.int64)
 NO_SHAPES, NO_STRAINS = np.zeros((0, 6, 2, 6)), np.zeros(0)
 
 
@@ -72,13 +72,21 @@ class ModelArrays(NamedTuple):
     # Of stones that can crack alone, else empty:
     pieces: np.ndarray = NO_PIECES  # stone that each block is a piece of, by number, and the joint between its pieces,
     # by its number in the case; −1: it is a whole stone, (n_blocks, 2) int64
+    # Of structures whose head joints are not like their beds alone, else empty:
+    courses: np.ndarray = NO_COURSES  # course that each block is laid in, by number, −1: none, and the row across that,
+    # 0: it goes through all of them, (n_blocks, 2) int64
 
 
 SPATIAL_MODEL = ("part_faces", "face_starts", "face_corners", "principal_axes")  # empty in the plane
 OF_MODES = (  # empty where blocks are rigid
     "mode_stiffness", "dead_mode_loads", "live_mode_loads", "mode_shapes", "imposed_strains"
 )  # fmt: skip
-WHERE_ASKED_FOR = (*OF_MODES, "restrained", "pieces")  # rows of blocks; empty where the case has nothing of it
+WHERE_ASKED_FOR = (
+    *OF_MODES,
+    "restrained",
+    "pieces",
+    "courses",
+)  # rows of blocks; empty where the case has nothing of it
 
 
 class Model(ModelArrays):
@@ -184,17 +192,30 @@ class Model(ModelArrays):
         """Half the extent of its block across each face [m], (n_faces,)."""
         return half_extents(self.vertices, self.vertex_blocks, self.topology, self.part_blocks)
 
-    def joints_between(self, by_material: np.ndarray, blocks: np.ndarray) -> np.ndarray:
+    def joints_between(self, by_material: np.ndarray, blocks: np.ndarray, heads: np.ndarray) -> np.ndarray:
         """The named joint of each pair of blocks (n, 2), (n,): of their materials, or within the stone of both.
 
-        by_material: joint of each pair of materials, (n_materials, n_materials) int64.
+        by_material: joint of each pair of materials, (n_materials, n_materials) int64; heads: the joint that lies in
+        the head joints of each named one, −1: nothing does, (n_named,) int64. Returns −1 where there is nothing.
         """
         materials = self.block_material[blocks]
         named = by_material[materials[:, 0], materials[:, 1]]
+        if len(self.courses):
+            named = np.where(self.side_by_side(blocks), heads[named], named)
         if not len(self.pieces):
             return named
         stones = self.pieces[blocks, 0]
         return np.where((stones[:, 0] == stones[:, 1]) & (stones[:, 0] >= 0), self.pieces[blocks[:, 0], 1], named)
+
+    def side_by_side(self, blocks: np.ndarray) -> np.ndarray:
+        """Whether each pair of blocks (n, 2) shares a head joint: both lie in one row of one course, (n,) bool.
+
+        None is where the case does not tell head joints from others: the model knows no courses then.
+        """
+        if not len(self.courses):
+            return np.zeros(len(blocks), bool)
+        (course, other), (row, beside) = (self.courses[blocks, k].T for k in (0, 1))
+        return (course == other) & (course >= 0) & ((row == beside) | (row == 0) | (beside == 0))
 
     def only(self, blocks: Sequence[int], fixed: np.ndarray) -> Model:
         """The model with these blocks alone, in this order, without links; fixed: which cannot move, (n,) bool."""
@@ -241,6 +262,7 @@ class Model(ModelArrays):
             live_mode_loads=NO_MODES,
             restrained=NO_RESTRAINTS,
             pieces=NO_PIECES,
+            courses=NO_COURSES,
             mode_shapes=NO_SHAPES,
             imposed_strains=NO_STRAINS,
         )

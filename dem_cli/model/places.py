@@ -22,7 +22,43 @@ def block_at(model: Model, point: np.ndarray) -> int | None:
 def blocks_at(model: Model, point: np.ndarray) -> np.ndarray:
     """Numbers of all blocks that contain a point of the undeformed structure (edges count), each once, ascending."""
     vertices, topology = undeformed(model), model.topology
-    normals = shapes_of(vertices).normals(vertices, topology)
-    depths = ((vertices[topology.face_corners[topology.face_starts[:-1]]] - point) * normals).sum(axis=1)
-    inside = np.minimum.reduceat(depths, topology.part_faces[:-1]) >= -1e-9 * model.parts.sizes.max()
+    depths = ((vertices[_on_faces(model)] - point) * _normals(model, vertices)).sum(axis=1)
+    inside = np.minimum.reduceat(depths, topology.part_faces[:-1]) >= -_slack(model)
     return np.unique(model.part_blocks[np.flatnonzero(inside)])
+
+
+def inside_blocks(model: Model, points: np.ndarray) -> np.ndarray:
+    """Which of many points (n, d) lie in a block of the undeformed structure, as `block_at` has it, (n,) bool.
+
+    Parts are compared with points within their width alone.
+    """
+    vertices, first_faces, found = undeformed(model), model.topology.part_faces, np.zeros(len(points), bool)
+    normals, on_faces = _normals(model, vertices), vertices[_on_faces(model)]
+    slack, order = _slack(model), np.argsort(points[:, 0], kind="stable")
+    sorted_points, room = points[order], 1e3 * slack  # room: a sharp corner reaches further than its faces
+    low = np.minimum.reduceat(vertices, model.part_starts[:-1], axis=0) - room
+    high = np.maximum.reduceat(vertices, model.part_starts[:-1], axis=0) + room
+    begins = np.searchsorted(sorted_points[:, 0], low[:, 0], "left")
+    ends = np.searchsorted(sorted_points[:, 0], high[:, 0], "right")
+    for part in np.flatnonzero(ends > begins):
+        near = sorted_points[begins[part] : ends[part]]
+        in_box = np.flatnonzero(((low[part] <= near) & (near <= high[part])).all(axis=1))
+        own = slice(first_faces[part], first_faces[part + 1])
+        depths = ((on_faces[own] - near[in_box, None]) * normals[own]).sum(axis=2)
+        found[order[begins[part] + in_box[depths.min(axis=1) >= -slack]]] = True
+    return found
+
+
+def _on_faces(model: Model) -> np.ndarray:
+    """A corner of each face, (n_faces,)."""
+    return model.topology.face_corners[model.topology.face_starts[:-1]]
+
+
+def _normals(model: Model, vertices: np.ndarray) -> np.ndarray:
+    """Outward unit normals of all faces, (n_faces, d)."""
+    return shapes_of(vertices).normals(vertices, model.topology)
+
+
+def _slack(model: Model) -> float:
+    """How far outside of a block a point still counts as on its edge [m]."""
+    return 1e-9 * float(model.parts.sizes.max())

@@ -210,7 +210,11 @@ class ArtificialTable(SpectrumTable, MotionTable):
         if self.number > self.count:
             raise KeyProblem(f"{self.number} is not allowed; must be at most count = {self.count}", "number")
         if self.rise + self.plateau > self.duration:
+            unsaid = [name for name in ("rise", "plateau") if name not in self.model_fields_set]
             room = f"rise + plateau = {self.rise + self.plateau:g} s is longer than that"
+            if unsaid:
+                values = " and ".join(f"{name} = {getattr(self, name):g}" for name in unsaid)
+                room += f" ({values} where the case gives none: shorten them too)"
             raise KeyProblem(f"{self.duration:g} s is not allowed; {room}", "duration")
         if self.time_step > self.duration / 100.0 or self.time_step > 0.02:
             most = min(0.02, self.duration / 100.0)

@@ -9,21 +9,26 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.arithmetic.small_matrices import diagonalised
+from dem_cli.model.copies import repeated
 from dem_cli.model.model import Model
-from dem_cli.output.record import Frame
+from dem_cli.output.record import Frame, FrameStack
 
 
-def mean_stresses(model: Model, frame: Frame) -> np.ndarray:
-    """Along the axes of the world, tension positive, symmetric [Pa], (n_blocks, d, d); 0 of fixed blocks."""
-    contacts, d = frame.contacts, model.dimension
-    forces, total = contacts.forces(), np.zeros((model.n_blocks, d, d))
+def mean_stresses(model: Model, frame: Frame | FrameStack) -> np.ndarray:
+    """Along the axes of the world, tension positive, symmetric [Pa], (n_blocks, d, d); 0 of fixed blocks.
+
+    Of a stack of frames those of all of them, (n_frames · n_blocks, d, d).
+    """
+    contacts, d, n = frame.contacts, model.dimension, len(frame.positions)
+    copies = n // model.n_blocks
+    forces, total = contacts.forces(), np.zeros((n, d, d))
     for side, sign in ((0, -1.0), (1, 1.0)):
         blocks = contacts.blocks[:, side]
         dyads = sign * forces[:, :, None] * (contacts.points - frame.positions[blocks])[:, None, :]
         for i, j in np.ndindex(d, d):
-            total[:, i, j] += np.bincount(blocks, dyads[:, i, j], model.n_blocks)
-    total *= 0.5 / (model.shapes.volumes * model.thickness)[:, None, None]
-    total[model.fixed] = 0.0
+            total[:, i, j] += np.bincount(blocks, dyads[:, i, j], n)
+    total *= repeated(0.5 / (model.shapes.volumes * model.thickness), copies)[:, None, None]
+    total[repeated(model.fixed, copies)] = 0.0
     return total + total.swapaxes(1, 2)
 
 

@@ -26,7 +26,6 @@ class GrowingDataset:
         """shape: of a row."""
         self.id, self.shape, self.dtype, self.length = id, shape, dtype, 0
         self._waiting: list[np.ndarray] = []
-        self._numbers: list[float] = []  # that wait, of a dataset of single numbers
         self._written = 0
         self._piece: np.ndarray | None = None  # of the file, that is being filled: as many rows as are stored together
 
@@ -38,16 +37,8 @@ class GrowingDataset:
             self._waiting.append(np.array(rows, dtype=self.dtype, order="C"))  # which may change afterwards
         return start
 
-    def append_one(self, value: float) -> None:
-        """Add a single number."""
-        self.length += 1
-        self._numbers.append(value)
-
     def write_out(self) -> None:
         """What waits becomes part of the file."""
-        if self._numbers:
-            self._waiting.append(np.array(self._numbers, self.dtype))
-            self._numbers.clear()
         if self._waiting:
             rows = self._waiting[0] if len(self._waiting) == 1 else np.concatenate(self._waiting)
             self._waiting.clear()
@@ -141,14 +132,6 @@ class GrowingGroup:
                 parent = name.rpartition("/")[0]
                 if parent and not len(self.group[parent]):
                     del self.group[parent]
-
-    def append_one(self, name: str, value: float, dtype: type = np.int64) -> None:
-        """Add a single number, to a dataset that gets nothing but these."""
-        column = self._columns.get(name)
-        if column is None:
-            self.append(name, np.array([value], dtype))
-        else:
-            column.append_one(value)
 
     def link(self, name: str, target: str) -> None:
         """Let `name` be another name of the dataset `target`."""

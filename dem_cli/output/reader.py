@@ -18,9 +18,19 @@ from dem_cli.model.model import Model
 from dem_cli.output.folder import SUMMARY, require_folder
 from dem_cli.output.integrity.stored_arrays import LaterArray, StoredArrays, check_size
 from dem_cli.output.layout import FRAMES, MODEL, NAMES, RESULTS_FORMAT, ROW_SCALARS, declared, units_of
-from dem_cli.output.record import STAGES, ContactRecord, Energy, Frame, JointPlaces, JointStates, LinkPlaces, LinkRecord
+from dem_cli.output.record import (
+    FRAME_ARRAYS,
+    STAGES,
+    ContactRecord,
+    Energy,
+    Frame,
+    JointPlaces,
+    JointStates,
+    LinkPlaces,
+    LinkRecord,
+)
 from dem_cli.output.series import HistorySeries, read_series
-from dem_cli.output.store import FRAME_ARRAYS, FRAME_SCALARS, RESULTS
+from dem_cli.output.store import FRAME_SCALARS, RESULTS
 from dem_cli.output.sweep_files import RUNS
 
 Stored: TypeAlias = "np.ndarray | LaterArray"  # an array in memory, or one that is read in parts

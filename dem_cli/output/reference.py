@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from dem_cli.output.record import FALLS
+from dem_cli.output.record import BUCKLED, FALLS
 from dem_cli.output.scalars import scalars
 
 Value = float | int | str | bool | None
@@ -167,7 +167,7 @@ def unexpected_fall(summary: Mapping[str, Any], references: Sequence[Mapping[str
     references: verdicts; one that is about how the run ended has the last word.
     """
     fails_at = summary.get("fails_at") if summary.get("vary") == STRENGTH else None
-    falls = summary["status"] == FALLS or (fails_at is not None and fails_at <= 1.0)
+    falls = summary["status"] in (FALLS, BUCKLED) or (fails_at is not None and fails_at <= 1.0)
     return falls and not any(answer["quantity"] in TOLD_BY for answer in references)
 
 

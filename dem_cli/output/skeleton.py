@@ -41,7 +41,7 @@ _images: dict[Any, bytes] = {}
 
 
 class GrowingParts(NamedTuple):
-    """What grows in results.h5 in the course of a run."""
+    """Groups of results.h5 that grow in the course of a run."""
 
     frames: GrowingGroup
     contacts: GrowingGroup

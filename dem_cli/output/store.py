@@ -21,7 +21,18 @@ from dem_cli.output.growing_dataset import GrowingGroup
 from dem_cli.output.hdf5_file import Hdf5File
 from dem_cli.output.layout import IN_SECONDS, JOINT_PLACES, JOINT_STATES, LINKS, ROW_SCALARS, declared
 from dem_cli.output.paraview.snapshot_files import BLOCKS, FollowedJoints, ParaViewFiles
-from dem_cli.output.record import STAGES, Energy, Frame, HistoryRow, LinkRecord, RunRow, Samples
+from dem_cli.output.record import (
+    FRAME_ARRAYS,
+    STAGES,
+    Energy,
+    Frame,
+    FrameStack,
+    HistoryRow,
+    LinkRecord,
+    RunRow,
+    Samples,
+    stacked,
+)
 from dem_cli.output.run_tables import TABLES, write_runs
 from dem_cli.output.series import SeriesWriter
 from dem_cli.output.skeleton import FRAMES_AT_ONCE, declare_model, fill_model, growing_parts, skeleton
@@ -29,10 +40,9 @@ from dem_cli.output.summary import write_summary
 
 RESULTS, CASE, HISTORY_TABLE = "results.h5", "case.toml", "history.csv"
 FRAME_SCALARS = ("step", "load", "displacement", "time")
-FRAME_ARRAYS = ("positions", "orientations", "velocities")
 _BUFFERED_ROWS = 4096
-_BUFFERED_SAMPLES = 1024
-_UNFLUSHED = 10_000_000  # contact points × steps, some tenths of a second of work
+_BUFFERED_SAMPLES = 16_384
+_UNFLUSHED = 30_000_000  # contact points × steps, a second or two of work
 _OF_A_STEP = 15  # contact points that a step counts as, beside its own
 _TEXT = h5py.string_dtype()
 JointsOf = Callable[[Model], FollowedJoints]
@@ -59,6 +69,8 @@ class ResultWriter:
         self.last_row: HistoryRow | None = None
         self.last_frame: Frame | None = None
         self.n_frames = 0
+        self._waiting: list[Frame] = []
+        self._n_points = 2 * model.n_blocks  # contact points, as long as no frame has said it
         self._flushed_step = -_UNFLUSHED
         self._rows: list[HistoryRow] = []
         self._held = EquilibriumMonitors(self.monitors, self.quantities)
@@ -91,22 +103,23 @@ class ResultWriter:
     def frame(self, frame: Frame) -> None:
         """Keep a snapshot; everything up to it is on disk when this returns.
 
-        In a time history all of that waits until some tenths of a second of work have come together.
+        In a time history all of that waits until a second or two of work have come together.
         """
         self._guarded(lambda: self._frame(frame))
 
     def row(self, row: HistoryRow) -> None:
-        """Keep a row of the history; it goes to disk with the next frame."""
+        """Keep a row of the history; it goes to disk with the next frame, in a time history as frames do."""
         if len(row.monitors) != len(self.monitors):
             raise ValueError(f"{len(row.monitors)} monitor values for {len(self.monitors)} monitors")
         self._rows.append(row)
         self._held.row(row)
         self.last_row = row
-        if len(self._rows) >= _BUFFERED_ROWS:
+        if len(self._rows) >= _BUFFERED_ROWS or (len(self._rows) > 1 and self._worked(row.step)):
+            self._flushed_step = row.step
             self._guarded(self._flush)
 
     def samples(self, samples: Samples) -> None:
-        """Keep a stretch of a time history; it goes to disk with the next frame, or when many wait."""
+        """Keep a stretch of a time history; it goes to disk as frames do, or when many wait."""
         if self._series is None:
             self._series = SeriesWriter(
                 self.dem.create_group("series"), self.monitors, self.quantities, self.model.dimension
@@ -143,6 +156,7 @@ class ResultWriter:
         """Complete the files and write summary.json, last of all."""
 
         def finish() -> None:
+            self._store_frames()
             self._flush_rows()
             self._write_out()
             self._history.drop_unused()
@@ -168,6 +182,7 @@ class ResultWriter:
             raise write_error(error, self.name) from None
 
     def _flush(self) -> None:
+        self._store_frames()
         self._flush_rows()
         self._write_out()
         for file in self._files:
@@ -186,26 +201,38 @@ class ResultWriter:
             self._series.flush()
 
     def _frame(self, frame: Frame) -> None:
-        if self._vtk is None:
-            self._begin_frames(frame.links)
-            assert self._vtk is not None
-        self._store_frame(frame)
-        now = None
-        if self._joints is not None and self._joint_states is not None:
-            now = self._joints.at(frame.positions, frame.orientations, frame.contacts)
-            for name, values in now.states._asdict().items():
-                self._joint_states.append(name, values[np.newaxis])
-        self._vtk.add(float(frame.time if self.kind in IN_SECONDS else self.n_frames), frame, now)
+        self._waiting.append(frame)
         self.n_frames += 1
         self.last_frame = frame
-        if self._awaited(frame):
+        self._n_points = len(frame.contacts.joint)
+        if self.kind not in IN_SECONDS or self._worked(frame.step):
             self._flushed_step = frame.step
             self._flush()
 
-    def _awaited(self, frame: Frame) -> bool:
-        """Whether a frame goes to disk at once: those of a time history may come faster than a disk is worth."""
-        work = abs(frame.step - self._flushed_step) * (len(frame.contacts.joint) + _OF_A_STEP)
-        return self.kind not in IN_SECONDS or work >= _UNFLUSHED
+    def _worked(self, step: int) -> bool:
+        """Whether a time history has worked for so long that what waits is worth a disk's time.
+
+        By steps and not by a clock: the same run leaves the same bytes.
+        """
+        work = abs(step - self._flushed_step) * (self._n_points + _OF_A_STEP)
+        return self.kind in IN_SECONDS and work >= _UNFLUSHED
+
+    def _store_frames(self) -> None:
+        """All frames that wait, together."""
+        if not self._waiting:
+            return
+        if self._vtk is None:
+            self._begin_frames(self._waiting[0].links)
+            assert self._vtk is not None
+        stack, now = stacked(self._waiting), None
+        first, n = self.n_frames - len(self._waiting), len(self._waiting)
+        self._waiting.clear()
+        self._keep(stack)
+        if self._joints is not None and self._joint_states is not None:
+            now = self._joints.at(stack.positions, stack.orientations, stack.contacts)
+            for name, values in now.states._asdict().items():
+                self._joint_states.append(name, values.reshape(n, -1))
+        self._vtk.add(stack.numbers("time") if self.kind in IN_SECONDS else first + np.arange(float(n)), stack, now)
 
     def _begin_frames(self, links: LinkRecord | None) -> None:
         """The files for ParaView, and what does not change of joints and links."""
@@ -228,21 +255,28 @@ class ResultWriter:
         self._vtk = ParaViewFiles(self.model, self._joints, self._open, links and links.places)
         self.dem.parent["VTKHDF"] = h5py.ExternalLink(BLOCKS, "/VTKHDF")
 
-    def _store_frame(self, frame: Frame) -> None:
-        frames, contacts = self._frames, self._contacts
-        for name, values in frame.contacts.stored().items():
+    def _keep(self, stack: FrameStack) -> None:
+        """In results.h5."""
+        frames, contacts, n = self._frames, self._contacts, len(stack.frames)
+        for name, values in stack.own_contacts().stored().items():
             contacts.append(name, values)
         for name in FRAME_ARRAYS:
-            frames.append(name, getattr(frame, name)[np.newaxis])
-        if frame.stresses is not None:
-            frames.append("stresses", frame.stresses[np.newaxis])
-        if self._links is not None and frame.links is not None:
-            self._links.append("forces", frame.links.forces[np.newaxis])
-        frames.append_one("step", frame.step)
+            frames.append(name, _by_frame(getattr(stack, name), n))
+        if stack.stresses is not None:
+            frames.append("stresses", _by_frame(stack.stresses, n))
+        if self._links is not None:
+            forces = [frame.links.forces for frame in stack.frames if frame.links is not None]
+            self._links.append("forces", np.array(forces))
+        frames.append("step", stack.numbers("step", np.int64))
         for name in FRAME_SCALARS[1:]:
-            frames.append_one(name, getattr(frame, name), np.float64)
-        frames.append_one("stage", STAGES.index(frame.stage), np.int8)
-        frames.append_one("n_contacts", len(frame.contacts.joint))  # last: it counts
+            frames.append(name, stack.numbers(name))
+        frames.append("stage", stack.numbers("stage", np.int8))
+        frames.append("n_contacts", stack.n_points)  # last: it counts
+
+
+def _by_frame(rows: np.ndarray, n_frames: int) -> np.ndarray:
+    """Rows of blocks, frame by frame, (n_frames, n_blocks, ...)."""
+    return rows.reshape(n_frames, -1, *rows.shape[1:])
 
 
 def _links_of(model: Model) -> list[tuple[str, Any]]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.output.folder import SUMMARY
+from dem_cli.output.record import ABOVE
 from dem_cli.output.scalars import plain
 
 ORDER = (
@@ -23,6 +24,7 @@ ORDER = (
     "check",
     "turning_points",
     "loops",
+    "moved_far",
     "settlement_at_collapse",
     "vary",
     "safety_factor",
@@ -47,6 +49,8 @@ ORDER = (
     "collapse_intensities",
     "energy_shares",
     "limit_analysis",
+    "no_bound",
+    "above_the_bound",
     "reference",
     "blocks",
     "joints",
@@ -80,7 +84,8 @@ def write_summary(folder: Path, summary: Mapping[str, Any]) -> None:
 
 
 def exit_code(summary: Mapping[str, Any]) -> int:
-    """What `dem run` returns: 0 solved, 1 outside a reference or does not stand, 3 gave up, 130 interrupted."""
+    """What `dem run` returns: 0 solved, 1 outside a reference, above its bound or does not stand, 3 gave up,
+    130 interrupted."""
     status = str(summary["status"])
     if status == "interrupted":
         return 130
@@ -89,4 +94,4 @@ def exit_code(summary: Mapping[str, Any]) -> int:
     from dem_cli.output.reference import as_declared, from_summary, unexpected_fall
 
     answers = from_summary(summary.get("reference"))
-    return 1 if unexpected_fall(summary, answers) or not all(map(as_declared, answers)) else 0
+    return 1 if status == ABOVE or unexpected_fall(summary, answers) or not all(map(as_declared, answers)) else 0

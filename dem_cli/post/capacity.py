@@ -36,7 +36,7 @@ class CapacityAxis(NamedTuple):
 
 
 def capacity_axis(results: Results) -> CapacityAxis:
-    """What the loads of a run are drawn against."""
+    """Displacement axis of the loads of a run."""
     history, summary = results.history, results.summary
     curve = summary.get("capacity_curve")
     turns: list[dict[str, Any]] = summary.get("turning_points") or [{}]

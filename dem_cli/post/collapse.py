@@ -114,7 +114,7 @@ def _panel_title(name: str, frame: Frame, scale: float, kind: str) -> str:
 
 
 def window(model: Model, corners: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """What all panels show: everything, with a margin; of the ground only what is near. corners: (n_vertices, 2)."""
+    """Limits of all panels: all blocks with a margin; of the ground only what is near. corners: (n_vertices, 2)."""
     free = ~model.fixed[model.vertex_blocks]
     moving = np.concatenate([c[free] if free.any() else c for c in corners])
     everything = np.concatenate(corners)

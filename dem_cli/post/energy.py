@@ -65,7 +65,7 @@ def draw_energy(results: Results, path: Path) -> None:
 
 
 def across(results: Results) -> Across:
-    """What the ledger of a run is drawn against: time, displacement where that grows, else the solver step."""
+    """Horizontal axis of the energy ledger: time, displacement where that grows, else the solver step."""
     history = results.history
     if (history["stage"] == "shaking").any():
         return Across("time", 1.0, "time [s]")

@@ -124,7 +124,7 @@ def find(found: Sequence[ColumnTable], names: Sequence[str]) -> tuple[ColumnTabl
 
 
 def usual(results: Results) -> tuple[str, list[str]] | None:
-    """What most people want to see of a run: names for x and y; None where it has no curve."""
+    """Usual columns of the chart of a run: names for x and y; None where it has no curve."""
     found = tables(results)
     if not found:
         return None

@@ -141,7 +141,7 @@ def _text(folder: Path, name: str) -> str:
 
 
 def value(text: str) -> Any:
-    """What a cell holds: a number, a truth, a word, or nothing."""
+    """Value of a cell of a sweep's table: a number, a truth, a word, or nothing."""
     if text in ("", "true", "false"):
         return {"": None, "true": True, "false": False}[text]
     try:

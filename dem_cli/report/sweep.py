@@ -54,7 +54,7 @@ def page(folder: Path, place: Path) -> str:
 
 
 def main_columns(table: SweepTable) -> list[str]:
-    """What the table shows at first: what differs and what was found."""
+    """Columns that the table of a sweep shows at first: parameters that differ, and answers."""
     reasons = ["reason"] if any(table.columns.get("reason", ())) else []
     modes = [name for name in ("failure_mode",) if name in table.columns]
     brackets = [name for name in table.columns if name.startswith(("peaks.", "failure_load_bracket"))]

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.geometry.rotation import angles_between, beside, matrices, rotation_vectors, unturned
+from dem_cli.geometry.rotation import beside, largest_angle_between, matrices, rotation_vectors, unturned
 from dem_cli.model.model import Model
 from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.paraview.vertices import in_space
@@ -125,7 +125,7 @@ def _within(budget: int, sizes: Sequence[int], always: set[int]) -> list[int]:
 def _close(frames: Sequence[Frame]) -> bool:
     """Whether it is known which way round every block turned from each frame to the next."""
     pairs = zip(frames, frames[1:])
-    return all(angles_between(a.orientations, b.orientations).max(initial=0.0) < _FAR_ROUND for a, b in pairs)
+    return all(largest_angle_between(a.orientations, b.orientations) < _FAR_ROUND for a, b in pairs)
 
 
 def _first_shown(frames: Sequence[Frame], summary: Mapping[str, Any]) -> int:

@@ -1,9 +1,9 @@
 """Agreement of methods: what other histories and the bound by limit analysis say beside a failure load.
 
 Joints that slide without dilating leave the failure load to the history of loading: several loads may be true. Where
-the bound by limit analysis is reached and nothing slides, the load is the only one. Else a second history from
-gravity, by another method, says whether the first one can be trusted; where they differ by more than the resolution, a
-run says so.
+the bracket holds the bound by limit analysis and nothing slides in any of its mechanisms, the load is the only one.
+Else a second history from gravity, by another method, says whether the first one can be trusted; where they differ by
+more than the resolution, a run says so.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from dem_cli.statics.warm_start import PATH as AT_PATH
 
 RAISED, IN_LARGE_STEPS, PATH, CREEP = "raised from gravity", "in larger steps", "zero-dilation path", "creep"
 FROM_CURVE = "displacement control"
+HOLDS = 2e-4  # of the bound, that it may lie outside a bracket that holds it: failure is shown a little above
 LIMIT = "limit analysis"  # where nothing slides in its mechanism: then rigid blocks carry its load on any history
 
 
@@ -33,12 +34,21 @@ class History(NamedTuple):
         return self._asdict()
 
 
-def unique(search: FailureLoad, resolution: float) -> bool:
-    """Whether the failure load is the bound of a mechanism in which nothing slides, on which no history depends."""
+def at_the_bound(search: FailureLoad, resolution: float) -> bool:
+    """Whether the load is the bound of a mechanism in which nothing slides, so that no second history is due."""
     bound, high, limits = search.bound, search.high, search.limits
     if bound is None or high is None or limits is None:
         return False
     return bool(bound <= high + resolution * abs(high)) and not limits.slides
+
+
+def unique(search: FailureLoad) -> bool:
+    """Whether no other load is possible: the bracket holds the bound, and nothing slides in any mechanism of it."""
+    bound, low, high, limits = search.bound, search.low, search.high, search.limits
+    if bound is None or low is None or high is None or limits is None or not search.found:
+        return False
+    margin = HOLDS * abs(bound)
+    return bool(low - margin <= bound <= high + margin) and limits.none_slides
 
 
 def histories(search: FailureLoad) -> list[History]:
@@ -105,7 +115,7 @@ def _alone_beyond_its_path(search: FailureLoad, resolution: float) -> bool:
     path = search.limits.path if search.start.get("kind") == AT_PATH and search.limits is not None else None
     if path is None or path.load is None or path.finished or not search.found or search.wide:
         return False
-    return search.carried > (1.0 + resolution) * path.load and not unique(search, resolution)
+    return search.carried > (1.0 + resolution) * path.load and not at_the_bound(search, resolution)
 
 
 def percent(share: float) -> str:

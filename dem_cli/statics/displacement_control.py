@@ -22,6 +22,7 @@ import numpy as np
 
 from dem_cli.engine import measures
 from dem_cli.errors import SolverError
+from dem_cli.kernels import records as slot
 from dem_cli.output.resume.stages import stage
 from dem_cli.statics.equilibrium import check_finite, limit_falls
 
@@ -66,6 +67,7 @@ class DisplacementControl:
         )
         self.forces = measures.live_force(sim)  # of the live load [N]
         self.first = self.settings.first * compliance / self.forces
+        self.growth = 1.0  # of all forces, at most so far (engine/loads.py)
         self.largest = measures.largest_displacement(sim)  # at the origin
         self.origin = self._place
         self.slope: float | None = None  # of the displacement of the live load over that of the monitor
@@ -138,8 +140,10 @@ class DisplacementControl:
         return all(self._go(distance / settings.shares, tries - 1) for _ in range(settings.shares))
 
     def _steps(self, distance: float) -> float:
-        """Length of a ramp: joints must not slip because of what a block moves in a step."""
-        return self.settings.ramp * math.sqrt(max(abs(distance) / self.first, 1.0))
+        """Length of a ramp: beside the forces that act, blocks that move in a step must not make joints slip."""
+        live = float(self.sim.control[slot.LIVE_FACTOR])
+        self.growth = max(self.growth, self.sim.acting.growth(live))
+        return self.settings.ramp * math.sqrt(max(abs(distance) / (self.growth * self.first), 1.0))
 
     def _ramp(self, distance: float) -> None:
         sim, stairs = self.sim, self.settings.stairs

@@ -29,13 +29,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What happened at a constant load."""
+    """Verdict on a structure at a constant load: equilibrium, failure, or neither."""
 
     state: str  # "equilibrium" | "failure" | "unknown"
     unbalanced: float  # largest unbalanced force at the end, in weights of its own block
     released: float = 0.0  # failure: share of the work of the loads that became motion or was damped
     growth: float = 0.0  # failure: growth of the displacement in the last doubling of time
     block: str | None = None  # failure: that came to rest elsewhere
+    buckles: bool = False  # failure: forces balance, and the least push makes it go on
 
 
 class Ahead(NamedTuple):
@@ -217,8 +218,8 @@ def _ramp(sim: Simulation, load: float, scale: float, budget: Budget, doing: str
 
 
 def _weigh_down(sim: Simulation, budget: Budget) -> None:
-    """Dead loads little by little, where joints remember or blocks swell or shrink by themselves."""
-    steps, stair = _steps_of_memory(sim), _stair(sim)
+    """Dead loads little by little, where joints or links remember or blocks swell or shrink by themselves."""
+    steps, stair = max(_steps_of_memory(sim), _steps_of_links(sim)), _stair(sim)
     if len(sim.model.imposed_strains):
         steps, stair = _steps_by_depth(sim), sim.settings.relaxation.stair_of_strain
     if not steps:
@@ -234,6 +235,17 @@ def _weigh_down(sim: Simulation, budget: Budget) -> None:
 def _steps_of_memory(sim: Simulation) -> int:
     """Length of the ramp of a load on joints that remember; 0 for others."""
     return _steps_by_depth(sim) if sim.law.n_memory(sim.model.dimension) else 0
+
+
+def _steps_of_links(sim: Simulation) -> int:
+    """Length of a ramp in which blocks follow on ties and bars that yield or slide, without swinging past where they
+    rest, which these would remember; 0: there are none."""
+    relaxation = sim.settings.relaxation
+    softest = min((link.softest() for link in sim.links if link.yields()), default=math.inf)
+    light = sim.loads.inverse_masses[sim.free, : sim.model.dimension]
+    heaviest = float((1.0 / light[light > 0.0]).max(initial=0.0))
+    period = 2.0 * math.pi * math.sqrt(heaviest / softest)
+    return int(min(relaxation.ramp_of_links * period, relaxation.longest_ramp))
 
 
 def _steps_by_depth(sim: Simulation) -> int:

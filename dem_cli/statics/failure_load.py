@@ -35,6 +35,8 @@ from dem_cli.statics.trial_loads import TrialLoads
 from dem_cli.statics.warm_start import CURVE, GRAVITY, LIMIT, PATH, start_by_path
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from dem_cli.engine.simulation import Simulation
     from dem_cli.engine.track import Track
     from dem_cli.statics.warm_start import CurveStart, WarmStart
@@ -50,10 +52,19 @@ class LoadSearch:
     """The search of the failure load of a structure that stands under its dead loads (see the module docstring).
 
     What is found goes to `answer` as it is found, so that it is not lost where the budget ends; the equilibria are
-    kept as rows in the track. Loads inside are internal multipliers.
+    kept as rows in the track. Loads inside are internal multipliers. buckles: whether a state at rest does.
     """
 
-    def __init__(self, sim: Simulation, wanted: SearchRange, budget: Budget, track: Track, answer: FailureLoad) -> None:
+    def __init__(
+        self,
+        sim: Simulation,
+        wanted: SearchRange,
+        budget: Budget,
+        track: Track,
+        answer: FailureLoad,
+        buckles: Callable[[Simulation], bool] = lambda sim: False,
+    ) -> None:
+        self.buckles = buckles
         self.sim, self.budget, self.track, self.answer = sim, budget, track, answer
         self.resolution, self.settings, scale = wanted.resolution, sim.settings.load_search, sim.live_scale
         self.limit = self.settings.locked if wanted.max_load is None else wanted.max_load / scale
@@ -369,6 +380,8 @@ class LoadSearch:
                 sim, load, self.budget, answer.elastic * abs(load), tolerance,
                 ahead=self._ahead(load), most_steps=most,
             )  # fmt: skip
+        if verdict.state == "equilibrium" and self.buckles(sim):
+            verdict = Verdict("failure", sim.unbalanced, buckles=True)
         self._passed("impossible" if impossible else "load", before, load, verdict.state)
         return verdict
 

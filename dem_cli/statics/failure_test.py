@@ -15,6 +15,8 @@ import numpy as np
 from dem_cli.engine import measures
 from dem_cli.engine.measures import free_falls
 from dem_cli.engine.placement.clearances import beyond
+from dem_cli.geometry.rotation import matrices, oriented_as, turned_since
+from dem_cli.model.scales import levels
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
@@ -83,14 +85,39 @@ class FailureTest:
 
 
 def displaced(sim: Simulation, since: np.ndarray, scale: float) -> int | None:
-    """The block that moved furthest since `since` (Simulation.places), where that was no elastic motion.
+    """The block that came to rest off what it stood on at `since` (Simulation.places); None: there is none.
 
-    A structure that comes to rest after it is another structure: something toppled or slid down. Where geometry is
-    that of the start nothing can: however far high walls move on their joints before they rest, forces balance there.
+    A structure that comes to rest after that is another structure: something toppled, slid down or fell. How far blocks
+    have moved says nothing by itself: a tall cantilever bends by its width and stands (`_carried_as_before`). Where
+    geometry is that of the start nothing can come to rest elsewhere.
     """
     if sim.kinematics == "fixed":
         return None
-    proof = sim.settings.proof
+    moved, turned = _beyond_play(sim, since)
+    gross = _gross(sim, moved, turned) & (np.maximum(moved, turned) > sim.settings.proof.not_elastic * scale)
+    if gross.any():
+        gross &= ~_carried_as_before(sim, since, scale)
+    return int(np.where(gross, moved + turned, 0.0).argmax()) if gross.any() else None
+
+
+def moved_far(sim: Simulation, since: np.ndarray) -> tuple[int, float] | None:
+    """The block that moved furthest since `since` (Simulation.places), and how far [m]; None: nothing moved so far that
+    it deserves a word."""
+    if sim.kinematics == "fixed":
+        return None
+    moved, turned = _beyond_play(sim, since)
+    if not _gross(sim, moved, turned).any():
+        return None
+    distance = np.where(sim.model.fixed, 0.0, np.linalg.norm((sim.places() - since)[:, : sim.model.dimension], axis=1))
+    block = int(distance.argmax())
+    return block, float(distance[block])
+
+
+def _beyond_play(sim: Simulation, since: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Largest motion of each block since `since`, of its centroid and turned times its radius [m], (n_blocks,) each.
+
+    What closes gaps of the start is left out.
+    """
     motion = np.abs(sim.places() - since)
     d = sim.model.dimension
     moved, turned = motion[:, :d].max(axis=1), motion[:, d:].max(axis=1)
@@ -99,6 +126,33 @@ def displaced(sim: Simulation, since: np.ndarray, scale: float) -> int | None:
         moved = beyond(sim.play.moved, moved, before[:, :d].max(axis=1), now[:, :d].max(axis=1))
         turning = sim.play.turned * sim.shape.radii
         turned = beyond(turning, turned, before[:, d:].max(axis=1), now[:, d:].max(axis=1))
-    gross = (moved > proof.gross * sim.widths) | (turned > proof.turned * sim.shape.radii)
-    gross &= (np.maximum(moved, turned) > proof.not_elastic * scale) & ~sim.model.fixed
-    return int(np.where(gross, moved + turned, 0.0).argmax()) if gross.any() else None
+    return moved, turned
+
+
+def _gross(sim: Simulation, moved: np.ndarray, turned: np.ndarray) -> np.ndarray:
+    """Which free blocks moved by much of their width, or turned by much, (n_blocks,) bool."""
+    proof = sim.settings.proof
+    return ((moved > proof.gross * sim.widths) | (turned > proof.turned * sim.shape.radii)) & ~sim.model.fixed
+
+
+def _carried_as_before(sim: Simulation, since: np.ndarray, scale: float) -> np.ndarray:
+    """Which blocks hang together with supports by joints that are still the same ones, (n_blocks,) bool.
+
+    In such a joint the places of both blocks that touch now were next to each other at `since`, and neither has turned
+    much against the other.
+    """
+    proof, bodies, joints, d = sim.settings.proof, sim.bodies, sim.joints, sim.model.dimension
+    before = oriented_as(bodies.orientations, since[:, d:] / sim.shape.radii[:, None])
+    turns, start = matrices(bodies.orientations), matrices(before)
+    acting = sim.contacts.normal != 0.0
+    points, pairs = joints.points[acting], joints.blocks[joints.owners[acting]]
+    own = points[:, None] - bodies.positions[pairs]  # arms now, then along the axes of each block, then as they were
+    own = np.einsum("pskl,psk->psl", turns[pairs], own)
+    places = since[:, :d][pairs] + np.einsum("pskl,psl->psk", start[pairs], own)
+    apart = np.linalg.norm(places[:, 1] - places[:, 0], axis=1)
+    rotations = turned_since(bodies.orientations, before)[pairs]
+    turned = np.linalg.norm(rotations[:, 1] - rotations[:, 0], axis=1)
+    width, radius = sim.widths[pairs].min(axis=1), sim.shape.radii[pairs].min(axis=1)
+    other = (apart > proof.gross * width) | (turned > proof.turned)
+    other &= np.maximum(apart, turned * radius) > proof.not_elastic * scale
+    return levels(pairs[~other], sim.model.fixed) >= 0

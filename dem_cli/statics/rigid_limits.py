@@ -109,6 +109,16 @@ class RigidLimits:
         return slides(*self._matrices, found, self.job.settings.limit.associated)
 
     @cached_property
+    def none_slides(self) -> bool:
+        """Whether friction is proved to take no part in any mechanism of the bound, not only in the one found."""
+        found, settings = self.associated, self.job.settings.limit.associated
+        if self.slides or self._matrices is None or found is None:
+            return False
+        from dem_cli.limit.associated import sliding_share
+
+        return sliding_share(self._matrices[1], found, settings) <= settings.slides
+
+    @cached_property
     def path(self) -> Path | None:
         """The zero-dilation path from gravity to the plateau of its load; None where it does not apply."""
         if self._matrices is None or self.sim.links:  # which the path does not know
@@ -153,7 +163,7 @@ class RigidLimits:
         return "path" in self.seconds
 
     def loads(self) -> LimitLoads | None:
-        """What was found so far, for `limit_analysis` of summary.json."""
+        """Bounds of limit analysis so far, for `limit_analysis` of summary.json."""
         if self._matrices is None or self.associated is None:
             return None
         from dem_cli.limit.analysis import LimitLoads

@@ -29,15 +29,22 @@ class SettlementWay:
     """Supports move evenly, look by look; stations on the way are kept, so that one can go back.
 
     motion    whole movement of every block, zero but for the settling supports [m, rad], (n_blocks, n_dof)
+    buckles   whether a state at rest does
     path      movement at a share of the way, where it is not that share of the whole: of supports that turn together
     done      looks so far, of `rows`
     standing, failing   where it was last seen to come to rest, and to fail, with the supports held
     """
 
-    LASTING = frozenset(("sim", "path"))
+    LASTING = frozenset(("sim", "path", "buckles"))
 
-    def __init__(self, sim: Simulation, motion: np.ndarray, path: Callable[[float], np.ndarray] | None = None):
-        self.sim, self.path, settlement = sim, path, sim.settings.settlement
+    def __init__(
+        self,
+        sim: Simulation,
+        motion: np.ndarray,
+        path: Callable[[float], np.ndarray] | None = None,
+        buckles: Callable[[Simulation], bool] = lambda sim: False,
+    ):
+        self.sim, self.path, self.buckles, settlement = sim, path, buckles, sim.settings.settlement
         self.rows, self.done = settlement.rows, 0
         d, n_turns = sim.model.dimension, sim.model.inertias.shape[1]
         reach = np.column_stack([np.ones((len(motion), d)), *[sim.shape.radii] * n_turns])
@@ -73,7 +80,7 @@ class SettlementWay:
         """Whether the structure comes to rest with the supports held where they are."""
         self.sim.move_supports(np.zeros_like(self.rate))
         verdict = settle_or_fail(self.sim, 0.0, budget, measures.dead_scale(self.sim))
-        found = verdict.state == "equilibrium"
+        found = verdict.state == "equilibrium" and not self.buckles(self.sim)
         if found:
             self.standing = self.sim.save()
         else:

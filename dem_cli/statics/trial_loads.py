@@ -13,7 +13,7 @@ from dem_cli.engine.static_settings import LoadSearchSettings
 
 @dataclass
 class TrialLoads:
-    """What is proved so far, and what to try next; internal multipliers."""
+    """Bracket of the failure load that is proved so far, and the load to try next; internal multipliers."""
 
     settings: LoadSearchSettings
     resolution: float  # width of the bracket, relative

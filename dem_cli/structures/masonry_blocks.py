@@ -46,7 +46,7 @@ def _welded(stones: Sequence[Stone], gap: float) -> list[Stone]:
 def _block(name: str, stone: Stone, masonry: Masonry) -> Block:
     shapes = [part.shape for part in stone.parts]
     depths = {part.across for part in stone.parts}
-    others: dict[str, Any] = {"thickness": masonry.thickness, "course": stone.course}
+    others: dict[str, Any] = {"thickness": masonry.thickness, "course": stone.course, "row": stone.leaf}
     if depths == {masonry.whole}:
         return Block(name, tuple(shapes), stone.material, **others)
     if len(depths) == 1:

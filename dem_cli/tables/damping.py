@@ -81,7 +81,7 @@ class DampingTable(CaseModel):
     block: str | None = Field(
         default=None,
         description="id of the block whose frequency or restitution is meant; default: each joint for itself, "
-        "and the heaviest block on a support for a restitution",
+        "and the heaviest block with a face on a support for a restitution",
         examples=["column-1"],
     )
     rayleigh: RayleighDamping | None = Field(

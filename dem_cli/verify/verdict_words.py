@@ -26,13 +26,13 @@ def number(value: float, digits: int, sign: str = "") -> str:
 
 
 def found(answer: Mapping[str, Any]) -> str:
-    """What was found; of a curve the largest of its loads where those of the reference are."""
+    """The value found; of a curve the largest of its loads where those of the reference are."""
     value = answer["found"]
     return f"up to {shown(max(value))}" if "displacements" in answer and value else shown(value)
 
 
 def expected(answer: Mapping[str, Any]) -> str:
-    """What was expected; of a curve its peak and how many points it has."""
+    """The value expected; of a curve its peak and how many points it has."""
     if "displacements" in answer:
         return f"up to {shown(max(answer['value']), 6)} in {len(answer['value'])} points"
     return shown(answer["value"], 6)
@@ -62,7 +62,7 @@ def share(answer: Mapping[str, Any]) -> float | None:
 
 
 def allowed(answer: Mapping[str, Any]) -> str:
-    """What was allowed, in the unit of the quantity."""
+    """The tolerance, in the unit of the quantity."""
     return f"± {shown(answer['tolerance'], 2)}" if answer["tolerance"] else ""
 
 

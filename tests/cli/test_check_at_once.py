@@ -13,6 +13,7 @@ from dem_cli import api
 from dem_cli.case.reader import CaseSource, parse_toml, validate
 from dem_cli.cli import check
 from dem_cli.cli.main import main
+from dem_cli.kernels import jit
 from dem_cli.kernels.compilation.kept_code import may_be_kept
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
@@ -70,6 +71,13 @@ def test_what_only_compiled_code_does_is_left_to_it():
 
     assert check.at_once(model, work) == 1
     assert len(done) == 2
+
+
+@pytest.mark.parametrize(("changes", "in_python"), [((), 1), (("block.0.vertices.2=[400.0, 0.619]",), 0)])
+def test_many_neighbours_are_left_to_compiled_code(changes, in_python):
+    """Python took 31 s for 1,440 corners where one huge block made all stones neighbours of each other; now 1.4 s."""
+    model = api.build_model(api.load_case(CASES / "verification" / "top_load_b11.toml", changes))
+    assert check.at_once(model, lambda: jit._door.uncompiled) == in_python
 
 
 @pytest.mark.parametrize("path", sorted((CASES / "gallery").glob("*.toml")), ids=lambda path: path.stem)
@@ -142,3 +150,16 @@ def test_an_earthquake_is_made_without_the_heavy_parts_of_scipy(tmp_path):
     case.write_text(SHAKEN)
     done = subprocess.run([sys.executable, "-c", PREPARED, str(case)], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "LOADED []"
+
+
+def test_a_history_without_an_end_is_refused_as_a_run_refuses_it(tmp_path):
+    """It passed the check: "how long is not said"."""
+    case = tmp_path / "shaken.toml"
+    case.write_text(SHAKEN[: SHAKEN.index("[motion]")] + SHAKEN[SHAKEN.index("[analysis]") :])
+    said = []
+    for command in (["check", str(case)], ["run", str(case), "-o", str(tmp_path / "out")]):
+        done = CliRunner().invoke(main, command)
+        assert done.exit_code == 2
+        said.append(done.output)
+    assert said[0] == said[1]
+    assert "analysis.duration: missing; must be a number > 0" in said[0]

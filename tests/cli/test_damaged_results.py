@@ -206,3 +206,12 @@ def test_results_that_were_compressed_are_read(whole, tmp_path):
     packed(tmp_path / "results")
     with dem_cli.open(tmp_path / "results") as result:
         assert np.isfinite(result.frames[-1].positions).all()
+
+
+def test_all_pictures_go_to_a_folder_and_not_to_a_file(whole, tmp_path):
+    """A folder of that name was made."""
+    target = tmp_path / "pictures.doc"
+    done = CliRunner().invoke(main, ["plot", str(whole / "plane"), "-o", str(target)])
+    assert done.exit_code == 2
+    assert "all pictures of a run go to a folder; '.doc' names a file" in done.output
+    assert not target.exists()

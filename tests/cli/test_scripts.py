@@ -121,6 +121,8 @@ def test_documentation_finds_what_it_reads(project):
         (["--all"], []),
         (["--all", "-k", "a b"], ["-k", "a b"]),
         (["-k", "--all"], ["-m", "not slow", "-k", "--all"]),  # an option of pytest's
+        (["tests/test_a.py::test_slow"], ["tests/test_a.py::test_slow"]),  # whoever names a test wants it
+        (["-x", "a.py::b[1 2]", "c"], ["-x", "a.py::b[1 2]", "c"]),
     ],
 )
 def test_slow_tests_are_run_with_all(project, words, given):

@@ -335,7 +335,6 @@ def finished_runs(folder: Path) -> int:
     return len(list((folder / "runs").glob("*/summary.json")))
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kills as POSIX does")
 def test_50_runs_killed_three_times_give_the_same_bytes(tmp_path):
     case = tmp_path / "many.toml"
@@ -443,7 +442,6 @@ def cluster(tmp_path, workers: int = 2):
             process.wait()
 
 
-@pytest.mark.slow
 def test_a_cluster_gives_the_same_table(case, tmp_path):
     pytest.importorskip("distributed")
     dem("sweep", case, "-o", tmp_path / "here", "-j", 1)

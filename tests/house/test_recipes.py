@@ -105,13 +105,11 @@ def test_what_was_done_is_what_the_recipe_says(section):
     assert commands == [" ".join(words).replace(recipe.name, "*") for words in recipe.commands]
 
 
-@pytest.mark.slow
 def test_the_tests_pass(project):
     tests = [test for recipe in RECIPES.values() for test in recipe.tests]
     python(project, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", *OF_ALL, *tests)
 
 
-@pytest.mark.slow
 def test_pages_and_help_name_what_is_new(project):
     """What `scripts/docs --write` and the studies made of it."""
     assert '"tresca"' in (project / "docs" / "case.md").read_text(encoding="utf-8")
@@ -119,7 +117,6 @@ def test_pages_and_help_name_what_is_new(project):
     assert (project / "docs" / "laws" / "tresca.png").is_file()
 
 
-@pytest.mark.slow
 def test_a_case_runs(project):
     """It slides on its base at the load that the strength says."""
     (project / "case.toml").write_text(CASE, encoding="utf-8")
@@ -128,7 +125,6 @@ def test_a_case_runs(project):
     assert answer["failure_mode"] == "sliding"
 
 
-@pytest.mark.slow
 def test_a_kind_of_analysis_runs_and_says_its_answer(project):
     words = ("--set", "analysis.kind=weight", "-o", "weighed")
     said = python(project, "-m", "dem_cli", "run", "case.toml", *words)

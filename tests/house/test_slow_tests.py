@@ -1,4 +1,4 @@
-"""tests/slow_tests.txt names tests that exist, in order, and leaves quick ones in every folder."""
+"""tests/slow_tests.txt names all slow tests, which exist, in order, and leaves quick ones in every folder."""
 
 from __future__ import annotations
 
@@ -35,3 +35,9 @@ def test_every_folder_keeps_quick_tests():
     for path in FILES:
         left[path.parent] = left.get(path.parent, 0) + len(functions(path) - set(NAMED))
     assert min(left.values()) > 0, left
+
+
+def test_nothing_else_says_what_is_slow():
+    mark = "mark" + ".slow"
+    users = [path.name for path in sorted((ROOT / "tests").rglob("*.py")) if mark in path.read_text(encoding="utf-8")]
+    assert users == ["conftest.py"]

@@ -21,8 +21,9 @@ def one_joint(centred: bool = False, points: int = 2) -> JointProperties:
     layout = PointLayout(points, centred) if centred or points > 2 else None
     table = np.zeros((1, 1), np.int64)
     return JointProperties(
-        ("j",), table, np.array([KN]), np.array([KS]), np.zeros((1, 1)), np.zeros((1, 0)), (layout,), np.array([False])
-    )
+        ("j",), table, np.array([KN]), np.array([KS]), np.zeros((1, 1)), np.zeros((1, 0)), (layout,), np.array([False]),
+        np.array([False]),
+    )  # fmt: skip
 
 
 def start_joints(model: Model, centred: bool = False, points: int = 2) -> JointArrays:

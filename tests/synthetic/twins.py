@@ -77,6 +77,7 @@ def _joints(joints: FixedJoints, layers: np.ndarray) -> FixedJoints:
         places=np.ascontiguousarray(places),
         kn=joints.kn.repeat(m) / m,
         ks=joints.ks.repeat(m) / m,
+        torsion=np.ones(n),
         tiles=NO_TILES,
     )
 

@@ -57,7 +57,7 @@ def test_blocks_and_masses(planned, name, bricks, top):
     assert place == pytest.approx([0.03 if name == "test 12" else 0.2, 0.659])
 
 
-@pytest.mark.parametrize("name", ["test 1", pytest.param("test 4", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["test 1", "test 4"])
 def test_runs_near_the_thesis(name):
     """A coarse bracket, as docs/appendix_b.md has it; on joints on which the top moves as far as the thesis says."""
     found = sweep.changed(name, {"analysis.resolution": 0.01})

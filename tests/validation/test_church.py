@@ -106,7 +106,6 @@ def test_the_buttress_holds_the_left_nave_wall():
     assert abs(found["moves"]["turns"]["b"]) < 0.05 < found["moves"]["turns"]["c"]
 
 
-@pytest.mark.slow
 def test_without_slip_seven_bodies_turn():
     """On fitted walls, a little above virtual work, as beams are no lines, and below what dilating joints carry."""
     found = solved("church_a_no_slip", cases.model("church_a_no_slip", FITTED, resolution=0.01))

@@ -50,7 +50,6 @@ def test_dem_agrees_with_the_path(name):
     agree(name)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", LONG)
 def test_dem_agrees_with_the_path_on_larger_walls(name):
     agree(name)

@@ -85,3 +85,21 @@ def test_a_block_that_falls_into_its_bar_keeps_its_energy():
     bar.state[:] = 0.0
     sim.restore(saved)
     assert np.array_equal(bar.state, before)
+
+
+def test_a_bar_across_a_bed_that_slides():
+    """Square to the bed no slip stretches it: friction alone holds the run, λ = μ. In the associated load the
+    bed opens and the bar clamps it, λ W = μ (W + Ny). The run says why it is lower, whatever the elements."""
+    weight, strength = 2000.0 * 9.81 * 0.5, 2000.0
+    rod = {"area": 1e-5, "young": 2e11, "yield_stress": 2e8, "bond_stiffness": 2e8, "bond_strength": 2e4}
+    for element in (0.05, 0.02):
+        case = tables(
+            block("base", rectangle(-1, -1, 2, 0), fixed=True), block("b", rectangle(0, 0, 1, 0.5)), friction=0.3,
+            bars={"rod": rod}, reinforcement=[{"bar": "rod", "path": [[0.5, -0.45], [0.5, 0.45]], "element": element}],
+            analysis={"kind": "pushover", "direction": [1.0, 0.0], "limit": True},
+        )  # fmt: skip
+        summary, _ = solve(case)
+        assert summary["failure_load"] == pytest.approx(0.3, rel=2e-3)
+        assert summary["limit_analysis"]["associated"] == pytest.approx(0.3 * (1 + strength / weight), rel=1e-5)
+        (said,) = [text for text in summary["warnings"] if "ties or bars may hold more" in text]
+        assert "0.36116" in said

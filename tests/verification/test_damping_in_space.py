@@ -7,7 +7,7 @@ import math
 import engine
 import numpy as np
 import pytest
-from engine import block, tables
+from engine import block, rectangle, tables
 from oracle.maxwell import of_mode
 from scipy.optimize import least_squares
 
@@ -190,8 +190,8 @@ def on_ground(stone: dict, **damping):
     analysis = {"kind": "time-history", "duration": 1.0}
     made = engine.scene({"dimension": 3, **tables(ground, stone, damping=damping, analysis=analysis)})
     properties = joint_properties(made.case, made.model, DEFAULT.stiffness.dynamics)
-    joints = joints_of_start(made.model, bodies_at_rest(made.model), properties, smallest_edge(made.model)).joints
-    return made.case, made.model, reference_block(made.case, made.model, joints, made.case.damping)
+    start = joints_of_start(made.model, bodies_at_rest(made.model), properties, smallest_edge(made.model))
+    return made.case, made.model, reference_block(made.model, start, made.case.damping)
 
 
 RECTANGLE = [(-0.5, -0.85), (0.5, -0.85), (0.5, 0.85), (-0.5, 0.85)]
@@ -237,3 +237,33 @@ def test_wanted_restitution():
     damping = damping_of_start(case_, model)
     assert rocked(case_, model, reference, damping.fraction) == pytest.approx(0.72, abs=1e-3)
     assert "restitution 0.72 of block 'b'" in damping.words
+
+
+def beside(*stones: dict, dimension: int = 3, **damping) -> str:
+    """Words about the damping of stones on a slab."""
+    ground = rectangle(-9, -1, 9, 0)
+    slab = box("slab", (-9, 9), (-9, 9), (-1, 0), fixed=True) if dimension == 3 else block("slab", ground, fixed=True)
+    analysis = {"kind": "time-history", "duration": 1.0}
+    made = engine.scene({"dimension": dimension, **tables(slab, *stones, damping=damping, analysis=analysis)})
+    return damping_of_start(made.case, made.model).words
+
+
+V = [(0.0, 0.0), (1.0, 2.0), (-1.0, 2.0)]  # it stands on its lower corner, along y on an edge
+ON_EDGE = block("v", [(x, y, z) for x, z in V for y in (0.0, 3.0)])
+ON_CORNER = block("v", [(0.0, 0.0, 0.0), (1.0, 2.0, 2.0), (-1.0, 2.0, 2.0), (0.0, -2.0, 2.0)])
+SMALL = box("small", (4.0, 4.5), (0.0, 4.0), (0.0, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("dimension", "pointed", "small"),
+    [(3, ON_EDGE, SMALL), (3, ON_CORNER, SMALL), (2, block("v", V), block("small", rectangle(4.0, 0.0, 4.5, 1.0)))],
+    ids=["edge", "corner", "plane"],
+)
+def test_a_block_on_an_edge_or_a_corner_is_no_reference(dimension, pointed, small):
+    """It was, where it was the heaviest: an internal error in space, and a ratio of 1 in the plane."""
+    words = beside(pointed, small, dimension=dimension, restitution="housner")
+    assert words == "restitution of Housner, 0.7 for block 'small'"  # 1 − 1.5 sin²α, h/b = 2
+    with pytest.raises(CaseError, match="no block rests on a support with more than a corner or an edge; name one"):
+        beside(pointed, dimension=dimension, restitution="housner")
+    with pytest.raises(CaseError, match="'v' rests on a corner, an edge or an upright face: it does not rock"):
+        beside(pointed, small, dimension=dimension, restitution="housner", block="v")

@@ -20,7 +20,6 @@ SMALL = {  # of one or two blocks: solved by test_manual.py, all in one process
     "interface_slides", "lever", "slope_of_slip", "stepped_column", "tension_block",
 }  # fmt: skip
 REFERENCED = [path for path in FILES if failure_load(path) and path.stem not in LARGE | SMALL | PROFILED]
-SLOW = {"wall_3", "wall_2", "wall_with_door", "uneven_courses_tall", "heavy_beam"}
 DEAR = {"facade", "gatehouse"}  # solved for docs/data/loads.json
 SHOWN = [path for path in PLANAR if path.parent == CASES / "gallery" and path.stem not in DEAR]
 MODES = {
@@ -47,11 +46,7 @@ def run(path, folder, *options) -> dict:
     return json.loads(done.stdout)
 
 
-def marked(path):
-    return pytest.param(path, id=case_id(path), marks=[pytest.mark.slow] if path.stem in SLOW else [])
-
-
-@pytest.mark.parametrize("path", [marked(path) for path in REFERENCED])
+@pytest.mark.parametrize("path", REFERENCED, ids=case_id)
 def test_failure_load(path, tmp_path):
     reference = failure_load(path)
     summary = run(path, tmp_path)
@@ -100,7 +95,6 @@ def test_weight_and_units_do_not_matter(tmp_path):
     assert summary["failure_load"] == pytest.approx(0.6, abs=0.0018)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("path", SHOWN, ids=case_id)
 def test_gallery(path, tmp_path):
     """No reference; but the energy closes, and no load is above the associated one."""

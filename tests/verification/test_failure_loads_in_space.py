@@ -38,7 +38,6 @@ def test_turned_and_mirrored(change):
     assert load_of(change(case)) == pytest.approx(load_of(case), rel=RESOLUTION)
 
 
-@pytest.mark.slow
 def test_one_history_is_none():
     """A T wall whose path is given up: the load is raised a second time, in small steps, and both are said."""
     limit = replace(DEFAULT.limit, path=replace(DEFAULT.limit.path, effort=3e4))

@@ -68,7 +68,6 @@ def test_the_mechanism_dissipates_nothing_and_works_as_the_loads_do(name):
     assert -s.dead @ answer.velocities.ravel()[s.free] == pytest.approx(answer.multiplier, rel=1e-5)
 
 
-@pytest.mark.slow
 def test_a_wall_of_2275_blocks():
     """Against HiGHS it would take minutes; the bounds, which both come from the answer's own forces, must do."""
     sizes = ["structure.0.courses=70", "structure.0.blocks_per_course=32"]

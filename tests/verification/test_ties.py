@@ -11,9 +11,11 @@ from engine.limits import solved
 
 from dem_cli.dynamics.frequencies import modes, system
 from dem_cli.engine import measures
+from dem_cli.engine.automatic_stiffness import static_ratio
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.dynamic import DynamicSimulation
 from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.settings import DEFAULT
 from dem_cli.engine.viscous import Damping
 from dem_cli.kernels.records import Ground
 from dem_cli.links.link import FORCE, PLASTIC
@@ -226,3 +228,44 @@ def test_a_tie_stops_what_it_can():
     assert states[-1, 0, FORCE] == 0.0  # it came back, and the tie hangs
     sim.restore(saved := sim.save())
     assert np.array_equal(sim.links[0].state, saved.links[0])
+
+
+def tied_stack(dimension: int, stiffness: float = 5e6, **more) -> dict:
+    """Two blocks, each 0.5 m wide and 1.5 m high, the upper one held at its middle by an anchor of 6 kN."""
+    if dimension == 2:
+        blocks = [block("base", rectangle(-3, -1, 6, 0), fixed=True)]
+        blocks += [block(f"b{k}", rectangle(0.0, 1.5 * k, 0.5, 1.5 * (k + 1))) for k in (0, 1)]
+    else:
+        blocks = [prism("base", (-3, -1), (6, 0), (-2.0, 2.0), fixed=True)]
+        blocks += [prism(f"b{k}", (0.0, 1.5 * k), (0.5, 1.5 * (k + 1))) for k in (0, 1)]
+    flat = [0.0] * (dimension - 2)
+    ends = [[0.0, *flat, 2.25], [-4.0, *flat, 2.25]]
+    tie = {"ends": ends, "block": "b1", "anchored": True, "stiffness": stiffness, "yield_force": 6000.0}
+    push = {"kind": "pushover", "direction": [1.0, 0.0, *flat]}
+    return tables(*blocks, dimension=dimension, friction=0.7, tie=[tie], analysis=push, **more)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("stiffness", [5e5, 5e6, 5e7])
+def test_a_stack_on_stiff_joints_comes_to_rest_on_its_tie(dimension, stiffness):
+    """Both blocks turn about the toe once the tie yields: λ 2W 1.5 = 2W 0.25 + 6000 · 2.25, however soft it is beside
+    the joints; loads before are at rest within steps that a structure without it takes as well."""
+    expected = (2.0 * 0.75 * WEIGHT * 0.25 + 6000.0 * 2.25) / (2.0 * 0.75 * WEIGHT * 1.5)
+    summary, _ = solve(tied_stack(dimension, stiffness))
+    assert expected == pytest.approx(0.47248, abs=1e-5)
+    assert summary["status"] == "ok"
+    assert summary["failure_load"] == pytest.approx(expected, rel=2e-3)
+    assert summary["limit_analysis"]["associated"] == pytest.approx(expected, rel=1e-6)
+    assert summary["steps"] < 200_000
+
+
+def test_automatic_joints_beside_ties():
+    """As stiff as digits allow; with ties stiff beside the stiffest of them, and no more than they need."""
+    ways = DEFAULT.stiffness
+    ratio = static_ratio(scene(tied_stack(2)).model, "fixed", ways)
+    assert ratio == ways.statics
+    model = scene(tied_stack(2, 1e10)).model
+    weight, edge = 0.75 * WEIGHT, 0.5
+    assert static_ratio(model, "fixed", ways) == pytest.approx(100.0 * 1e10 * edge / weight)
+    bare = {key: value for key, value in tied_stack(2).items() if key != "tie"}
+    assert static_ratio(scene(bare).model, "fixed", ways) == ways.fixed

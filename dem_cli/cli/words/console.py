@@ -128,7 +128,7 @@ def answer_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Label and text of each line of an answer of any kind, without warnings."""
     rows = [*_load_rows(summary), *_shaking_rows(summary), *fragility_rows(summary), *mode_rows(summary)]
     rows += [*curve_rows(summary), *safety_rows(summary)]
-    return [*rows, *sureness_rows(summary), *_cost_rows(summary)]
+    return [*_standing_rows(summary), *rows, *sureness_rows(summary), *_cost_rows(summary)]
 
 
 def _controlled(turn: Mapping[str, Any]) -> float:
@@ -136,10 +136,36 @@ def _controlled(turn: Mapping[str, Any]) -> float:
     return float(turn["controlled"] if "of" in turn else turn.get("live_displacement", turn["displacement"]))
 
 
+def _standing_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """That a structure stands under its dead loads, and how far blocks moved until then, where that is far."""
+    if summary.get("kind") != "gravity" or summary["status"] != "ok":
+        return []
+    far = summary.get("moved_far")
+    moved = f"; block '{far['block']}' has moved by {metres(far['distance'])} until then" if far else ""
+    return [("result", f"stands{moved}")]
+
+
+def explained(summary: Mapping[str, Any]) -> bool:
+    """Whether the failure load lies above its bound because blocks have moved before."""
+    return bool((summary.get("above_the_bound") or {}).get("explained"))
+
+
+def _moved_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """What comes before a failure load that only blocks can carry that have moved: the load of the first motion."""
+    if not explained(summary):
+        return []
+    above = summary["above_the_bound"]
+    onset = summary.get("onset_of_displacements")
+    first = above["bound"] if onset is None else min(onset, above["bound"])
+    moved = f"then blocks move, by {metres(above['displacement'])} until the failure load"
+    return [("first motion", f"{load_text(first)}; {moved}")]
+
+
 def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     rows = []
     if summary["status"] != "ok":
         rows.append(("status", str(summary["status"])))
+    rows += _moved_rows(summary)
     load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
     if load is not None:
         between = (
@@ -159,7 +185,7 @@ def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(("equilibrium at", f"{load_text(summary['equilibrium_load'])}{bound}"))
     if summary.get("failure_mode"):
         rows.append(("failure mode", str(summary["failure_mode"])))
-    if summary.get("onset_of_displacements") is not None:
+    if summary.get("onset_of_displacements") is not None and not explained(summary):
         rows.append(("first motion", f"{load_text(summary['onset_of_displacements'])}, more than joints deform"))
     turns = summary.get("turning_points")
     if turns:

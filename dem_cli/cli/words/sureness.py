@@ -32,11 +32,13 @@ def sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(("limit analysis", text))
         if wedged(limits):
             rows.append(("", f"associated: {WEDGED}"))
+    if summary.get("no_bound"):
+        rows.append(("no bound", str(summary["no_bound"])))
     return rows + reference_rows(summary)
 
 
 def _of_load(summary: Mapping[str, Any]) -> list[str]:
-    """What the bracket says, and what other methods say beside it."""
+    """Width of the bracket of the failure load, and how other methods agree with it."""
     load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
     if not load or not bracket or None in bracket:
         return []

@@ -59,6 +59,13 @@ def shift(sim: Simulation, motion: np.ndarray) -> None:
     sim.taken_back += motion
 
 
+def push(sim: Simulation, motion: np.ndarray) -> None:
+    """Moves all blocks by small displacements (n_blocks, n_dof) [m, rad]; forces of joints answer in the next step."""
+    _move(sim, motion)
+    if sim.tracking.due(sim.bodies):
+        sim.detect()
+
+
 def move_to(sim: Simulation, motion: np.ndarray, shear: np.ndarray, load: float, friction: float) -> None:
     """Moves all blocks, at rest, by finite displacements (n_blocks, n_dof) [m, rad] to a state found elsewhere.
 

@@ -17,6 +17,7 @@ TILES_AHEAD = 8  # whose motion is collected before their forces are: what was j
 # read as a row for some time
 BLOCKS_OF_CHUNK = 512  # that are worked on together, while they are in the cache; their sums are by themselves
 N_SUMS = 16  # the ledger and some more; the control vector
+N_TORSION = 3  # rows of `numbers` of a tile in space: torsion, centre of pressure
 TILES_OF_CHUNK = 256  # whose friction work is summed by itself, whoever works on them
 
 
@@ -38,7 +39,8 @@ class JointTiles(NamedTuple):
     ends: np.ndarray  # room, two rows a tile: blocks a and b, int32
     # Before each loop the compiler has to ask of any two arrays whether they overlap: few, then, and in none of them
     # something whose distance from the rest depends on the slot.
-    numbers: np.ndarray  # room, rows of a tile: axes, both arms, numbers of the law; then of each slot: place, kn, ks
+    numbers: np.ndarray  # room, rows of a tile: axes, both arms, in space torsion and centre of pressure, those of the
+    # law; then of each slot: place, kn, ks
     state: np.ndarray  # room, rows of a slot: gap, shear, slip path
     pushes: np.ndarray  # room, 4 rows of a tile, 16 in space: force on b (against a), moments of it about a and about b
     moves: np.ndarray  # room of each thread, rows of TILES_AHEAD tiles: motion of b against a, spins of a and of b
@@ -55,7 +57,7 @@ class JointTiles(NamedTuple):
 def rows_of(d: int, n_numbers: int) -> tuple[int, int, int]:
     """Rows of `numbers` of a tile without its slots, of a slot there and in `state`, and of the motion of a tile."""
     r = d * (d - 1) // 2
-    return (2 if d == 2 else 9) + 2 * d + n_numbers, d + 1, d + 2 * r
+    return (2 if d == 2 else 9 + N_TORSION) + 2 * d + n_numbers, d + 1, d + 2 * r
 
 
 NO_TILES = JointTiles(

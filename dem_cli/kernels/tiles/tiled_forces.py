@@ -12,12 +12,25 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.kernels.contact_forces import pressed_at
 from dem_cli.kernels.contact_point import friction_work, plastic_slide
 from dem_cli.kernels.deformation.pressed_faces import line_gaps
 from dem_cli.kernels.jit import inline, named
-from dem_cli.kernels.joint_plane import add_moment_at, moment, opening_at, seen_from, seen_outside, sliding_at, sweep
+from dem_cli.kernels.joint_plane import (
+    add_moment_at,
+    centre_of,
+    drawn_in,
+    moment,
+    opening_at,
+    seen_from,
+    seen_outside,
+    sliding_at,
+    sweep,
+    torsion_of,
+    torsion_share,
+)
 from dem_cli.kernels.records import INTEGRATED
-from dem_cli.kernels.tiles.joint_tiles import TILES_AHEAD, TILES_OF_CHUNK
+from dem_cli.kernels.tiles.joint_tiles import N_TORSION, TILES_AHEAD, TILES_OF_CHUNK
 from dem_cli.kernels.tiles.lanes import LANES, ROW, lowest_bit, put, take, take_frame
 from dem_cli.kernels.vec import axpy, components, compose, load, norm, scale, store
 
@@ -30,6 +43,12 @@ class TiledForces(NamedTuple):
     take_up: Callable  # into the tiles, before the first step
     press: Callable  # forces of some tiles; returns their friction work [J]
     give_back: Callable  # into the records of contacts, after the last step
+
+
+@inline
+def rows_of_torsion(like):
+    """Rows of `numbers` of a tile for torsion: none in the plane."""
+    return 0 if len(like) == 2 else N_TORSION
 
 
 @inline
@@ -98,7 +117,8 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
         """Constants and state of the tiles from first to last, from the records that everybody else reads."""
         tiles, d = joints.tiles, len(like)
         n_axes, ends, numbers, state = joints.axes.shape[1], tiles.ends, tiles.numbers, tiles.state
-        of_tile, of_slot = np.uint64(n_axes + 2 * d + n_numbers) * ROW, np.uint64(d + 1) * ROW
+        n_drawn = rows_of_torsion(like)
+        of_tile, of_slot = np.uint64(n_axes + 2 * d + n_drawn + n_numbers) * ROW, np.uint64(d + 1) * ROW
         for t in range(first, last):
             begin, held, slots = _begin_of(tiles, t, of_tile, of_slot)
             for i in range(LANES):
@@ -113,10 +133,15 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
                         numbers[row + np.uint64(k) * ROW] = joints.axes[joint, k]
                     for k in range(2 * d):
                         numbers[row + np.uint64(n_axes + k) * ROW] = joints.arms[joint, k]
+                    drawn = row + np.uint64(n_axes + 2 * d) * ROW
+                    if n_drawn > 0:
+                        centre = pressed_at(joints.places, contacts.normal, start, start + count, like, like_rotation)
+                        numbers[drawn] = torsion_share(joints.torsion, joint, like)
+                        put(numbers, drawn + ROW, centre)
                     for k in range(of_the_law):
-                        numbers[row + np.uint64(n_axes + 2 * d + k) * ROW] = joints.law[joint, k]
+                        numbers[drawn + np.uint64(n_drawn + k) * ROW] = joints.law[joint, k]
                     if elastic:
-                        numbers[row + np.uint64(n_axes + 2 * d + of_the_law) * ROW] = float(joints.integrated[joint])
+                        numbers[drawn + np.uint64(n_drawn + of_the_law) * ROW] = float(joints.integrated[joint])
                 for p in range(slots):
                     at, now = row + of_tile + np.uint64(p) * of_slot, held + np.uint64(p) * of_slot + lane
                     if p >= count:  # there is none: it never touches
@@ -170,6 +195,8 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
         d, r = len(like), len(like_rotation)
         D, R, T = np.uint64(d) * ROW, np.uint64(r) * ROW, np.uint64(d - 1) * ROW
         A, S = (TWO if d == 2 else np.uint64(9)) * ROW, D + ROW
+        drawn = begin + A + TWO * D
+        of_joint = drawn + np.uint64(rows_of_torsion(like)) * ROW
         numbers, state, moves, work = tiles.numbers, tiles.state, tiles.moves, tiles.work
         marks, pushes = tiles.marks, tiles.pushes
         # Rows of work: opening, slide and spin of the joints, then their sums.
@@ -184,6 +211,8 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
             moved = axpy(1.0, axpy(-1.0, sweep(spin_a, arm_a), sweep(spin_b, arm_b)), take(moves, motion + lane, like))
             opens, slide = components(frame, scale(dt, moved))
             spin = seen_from(frame, scale(dt, axpy(-1.0, spin_a, spin_b)))
+            if d == 3:
+                slide, spin = drawn_in(slide, spin, take(numbers, drawn + ROW + lane, like[1:]), numbers[drawn + lane])
             work[room + lane] = opens
             put(work, slides + lane, slide)
             put(work, spins + lane, spin)
@@ -191,12 +220,10 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
             put(work, twists + lane, scale(0.0, like_rotation))
         for k in range(n_numbers):
             for i in range(LANES):
-                work[of_law + np.uint64(k) * ROW + np.uint64(i)] = numbers[
-                    begin + A + TWO * D + np.uint64(k) * ROW + np.uint64(i)
-                ]
+                work[of_law + np.uint64(k) * ROW + np.uint64(i)] = numbers[of_joint + np.uint64(k) * ROW + np.uint64(i)]
         lossy = 0
         for p in range(count):
-            at, now = begin + A + TWO * D + np.uint64(n_numbers) * ROW + np.uint64(p) * S, held + np.uint64(p) * S
+            at, now = of_joint + np.uint64(n_numbers) * ROW + np.uint64(p) * S, held + np.uint64(p) * S
             before = marked + np.uint64(p) * D
             for i in range(LANES):
                 lane = np.uint64(i)
@@ -228,6 +255,10 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
             frame = take_frame(numbers, begin + lane, like)
             arm_a, arm_b = take(numbers, begin + A + lane, like), take(numbers, begin + A + D + lane, like)
             rub, twist = take(work, rubs + lane, like[1:]), take(work, twists + lane, like_rotation)
+            if d == 3:
+                centre = centre_of(work[sums + lane], twist)
+                twist = torsion_of(twist, rub, take(numbers, drawn + ROW + lane, like[1:]), numbers[drawn + lane])
+                put(numbers, drawn + ROW + lane, centre)
             force = compose(frame, work[sums + lane], rub, scale(0.0, like))
             couple = seen_outside(frame, twist)
             put(pushes, push + lane, force)
@@ -320,7 +351,8 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
         motion, room, marked: where its room begins in `moves`, `work` and `marks`.
         """
         d, D = len(like), np.uint64(len(like)) * ROW
-        of_tile = (TWO if d == 2 else np.uint64(9)) * ROW + TWO * D + np.uint64(n_numbers) * ROW
+        of_tile = (TWO if d == 2 else np.uint64(9)) * ROW + TWO * D
+        of_tile += np.uint64(rows_of_torsion(like) + n_numbers) * ROW
         begin, held, count = _begin_of(tiles, tile, of_tile, D + ROW)
         push = (np.uint64(tile) & ring) * stride_of(like)
         if d == 2 and count == TWO:

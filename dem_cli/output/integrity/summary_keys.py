@@ -42,6 +42,22 @@ class FoundPeak(SummaryTable):
     unit: str
 
 
+class FoundMotion(SummaryTable):
+    """moved_far."""
+
+    block: str
+    distance: Number
+
+
+class FoundAbove(SummaryTable):
+    """above_the_bound."""
+
+    bound: Number
+    displacement: Number
+    bound_where_it_rests: Maybe
+    explained: bool
+
+
 class FoundValue(SummaryTable):
     """monitors.NAME."""
 
@@ -345,6 +361,9 @@ class RunSummary(SummaryTable):
     reweighting: FoundReweighting | None = None
     largest_overlap: Maybe = None
     largest_displacement: Maybe = None
+    moved_far: FoundMotion | None = None
+    no_bound: str | None = None
+    above_the_bound: FoundAbove | None = None
     unbalanced_force: Maybe = None
     warnings: list[str] | None = None
     skipped: list[str] | None = None

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.geometry.rotation import angles_of
+from dem_cli.model.copies import numbered_through
 from dem_cli.model.model import Model
 from dem_cli.model.uniform_strain import components
 from dem_cli.output.block_stress import mean_stresses, principal_values
 from dem_cli.output.paraview.vertices import in_space
-from dem_cli.output.record import STAGES, ContactRecord, Frame, JointPlaces, JointStates
+from dem_cli.output.record import ContactRecord, Frame, FrameStack, JointPlaces, JointStates
 
 
 def block_fields(model: Model) -> dict[str, np.ndarray]:
@@ -22,9 +23,10 @@ def block_fields(model: Model) -> dict[str, np.ndarray]:
     }
 
 
-def turning_fields(model: Model, frame: Frame) -> dict[str, np.ndarray]:
-    """How blocks have turned, in space how fast they turn, and their stress; per convex part."""
-    parts, d = model.part_blocks, model.dimension
+def turning_fields(model: Model, frame: Frame | FrameStack) -> dict[str, np.ndarray]:
+    """How blocks have turned, in space how fast they turn, and their stress; per convex part, frame by frame."""
+    d, copies = model.dimension, len(frame.positions) // model.n_blocks
+    parts = numbered_through(model.part_blocks, model.n_blocks, copies)
     found = {"rotation": angles_of(frame.orientations)}
     if frame.orientations.shape[1] == 4:
         found |= {"orientation": frame.orientations, "angular_velocity": frame.velocities[:, d:]}
@@ -64,12 +66,12 @@ def joint_fields(states: JointStates) -> dict[str, np.ndarray]:
     return found | {"state": states.state.astype(np.uint8)}
 
 
-def step_fields(frame: Frame) -> dict[str, float | int]:
-    """Numbers of a frame as a whole."""
+def step_fields(stack: FrameStack) -> dict[str, np.ndarray]:
+    """Numbers of frames as a whole, (n_frames,) each."""
     return {
-        "load_multiplier": float(frame.load),
-        "control_displacement": float(frame.displacement),
-        "stage": STAGES.index(frame.stage),
-        "step": int(frame.step),
-        "time": float(frame.time),
+        "load_multiplier": stack.numbers("load"),
+        "control_displacement": stack.numbers("displacement"),
+        "stage": stack.numbers("stage", np.int64),
+        "step": stack.numbers("step", np.int64),
+        "time": stack.numbers("time"),
     }

@@ -8,6 +8,7 @@ from typing import Protocol
 import h5py
 import numpy as np
 
+from dem_cli.model.copies import repeated
 from dem_cli.model.model import Model
 from dem_cli.output.layout import declared
 from dem_cli.output.paraview.cells import cells_of, lines, outlines_of_joints
@@ -29,13 +30,13 @@ from dem_cli.output.paraview.fields import (
 )
 from dem_cli.output.paraview.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.paraview.vtkhdf import GridSeries, PointSeries
-from dem_cli.output.record import ContactRecord, Frame, JointPlaces, JointStates, LinkPlaces
+from dem_cli.output.record import ContactRecord, FrameStack, JointPlaces, JointStates, LinkPlaces
 
 BLOCKS, CONTACTS, JOINTS, LINKS = VTK_FILES
 
 
 class JointsNow(Protocol):
-    """All joints at one instant."""
+    """All joints at one instant, or at several, one behind the other."""
 
     @property
     def states(self) -> JointStates:
@@ -58,7 +59,7 @@ class FollowedJoints(Protocol):
         """Where they were drawn."""
 
     def at(self, positions: np.ndarray, orientations: np.ndarray, contacts: ContactRecord) -> JointsNow:
-        """At one instant."""
+        """At one instant, or at those of a FrameStack with its contacts."""
 
 
 class ParaViewFiles:
@@ -90,19 +91,26 @@ class ParaViewFiles:
             if series is not None:
                 series.write_out()
 
-    def add(self, value: float, frame: Frame, joints: JointsNow | None) -> None:
-        """Append a frame; value: what ParaView counts it by."""
-        model, steps = self.model, step_fields(frame)
-        vertices = placed_vertices(model, frame.positions, frame.orientations)
-        velocities = vertex_velocities(model, vertices, frame.positions, frame.velocities)
-        moving = {"displacement": in_space(vertices - self._rest), "velocity": in_space(velocities)}
-        self.blocks.add(value, in_space(vertices), moving, turning_fields(model, frame), steps)
-        self.points.add(value, in_space(frame.contacts.points), contact_fields(frame.contacts), steps)
+    def add(self, values: np.ndarray, stack: FrameStack, joints: JointsNow | None) -> None:
+        """Append frames; values (n_frames,): what ParaView counts them by."""
+        model, steps, copies = self.model, step_fields(stack), len(stack.frames)
+        vertices = placed_vertices(model, stack.positions, stack.orientations)
+        velocities = vertex_velocities(model, vertices, stack.positions, stack.velocities)
+        moving = {
+            "displacement": in_space(vertices - repeated(self._rest, copies)), "velocity": in_space(velocities)
+        }  # fmt: skip
+        self.blocks.add(values, in_space(vertices), moving, turning_fields(model, stack), steps)
+        contacts = stack.own_contacts()
+        self.points.add(values, stack.n_points, in_space(contacts.points), contact_fields(contacts), steps)
         if self.joints is not None and joints is not None:
             ends = in_space(joints.ends.reshape(-1, model.dimension))
             gaps = {"gap": joints.gaps.ravel().astype(np.float32)}
-            self.joints.add(value, ends, gaps, joint_fields(joints.states), steps)
-        if self.links is not None and frame.links is not None:
-            points = in_space(frame.links.places.at(frame.positions, frame.orientations))
-            forces = {"force": frame.links.forces.astype(np.float32)}
-            self.links.add(value, points, forces, {"largest_force": frame.links.largest().astype(np.float32)}, steps)
+            self.joints.add(values, ends, gaps, joint_fields(joints.states), steps)
+        if self.links is not None:
+            drawn = [(frame.links, frame) for frame in stack.frames if frame.links is not None]
+            points = np.concatenate([at.places.at(frame.positions, frame.orientations) for at, frame in drawn])
+            forces = np.concatenate([at.forces for at, _ in drawn]).astype(np.float32)
+            largest = np.concatenate([at.largest() for at, _ in drawn]).astype(np.float32)
+            self.links.add(
+                values, in_space(np.concatenate(points)), {"force": forces}, {"largest_force": largest}, steps
+            )

@@ -1,17 +1,23 @@
-"""Vertices of the blocks in space and their velocities, for files and pictures."""
+"""Vertices of the blocks in space and their velocities, for files and pictures.
+
+Positions, orientations and velocities have a row for each block, or for each block of several frames one behind the
+other; corners come in the same order.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from dem_cli.geometry.rotation import matrices, swept
+from dem_cli.model.copies import numbered_through, repeated
 from dem_cli.model.model import Model
 
 
 def placed_vertices(model: Model, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
     """Corners in space [m], (n_vertices, d)."""
-    blocks = model.vertex_blocks
-    turned = np.einsum("nij,nj->ni", matrices(orientations)[blocks], model.vertices)
+    copies = len(positions) // model.n_blocks
+    blocks = numbered_through(model.vertex_blocks, model.n_blocks, copies)
+    turned = np.einsum("nij,nj->ni", matrices(orientations)[blocks], repeated(model.vertices, copies))
     return positions[blocks] + turned
 
 
@@ -29,7 +35,8 @@ def size_in_words(model: Model) -> str:
 
 def vertex_velocities(model: Model, vertices: np.ndarray, positions: np.ndarray, velocities: np.ndarray) -> np.ndarray:
     """Velocity of each corner, (n_vertices, d), from the generalised velocities of the blocks."""
-    blocks, d = model.vertex_blocks, model.dimension
+    blocks = numbered_through(model.vertex_blocks, model.n_blocks, len(positions) // model.n_blocks)
+    d = model.dimension
     return velocities[blocks, :d] + swept(velocities[blocks, d:], vertices - positions[blocks])
 
 

@@ -1,4 +1,4 @@
-"""Time series in the VTKHDF format, appended step by step; ParaView opens them (5.12 and later).
+"""Time series in the VTKHDF format, to which steps are appended; ParaView opens them (5.12 and later).
 
 Offsets follow what VTK 9.3 to 9.7 read alike: topology that stays is stored once, equal columns are one
 dataset under several names, and the number of steps is updated last, so that a file cut off between two
@@ -42,21 +42,24 @@ class _Series:
         for name in names if self.n_steps == 0 else ():
             self.columns.link(f"Steps/{kind}Offsets/{name}", target)
 
-    def _append_step_fields(self, fields: Mapping[str, float | int]) -> None:
+    def _append_step_fields(self, n: int, fields: Fields) -> None:
         """One number per step and field, shown by ParaView as field data."""
         columns = self.columns
-        columns.append_one("Steps/Index", self.n_steps)
-        columns.append("Steps/One", np.ones((1, 2), dtype=np.int64))  # one component, one tuple
-        for name, value in fields.items():
-            columns.append_one(f"FieldData/{name}", value, np.int64 if isinstance(value, int) else np.float64)
+        columns.append("Steps/Index", self._numbers(n))
+        columns.append("Steps/One", np.ones((n, 2), dtype=np.int64))  # one component, one tuple
+        self._append_fields("FieldData", fields)
         self._link_offsets("FieldData", fields, "Steps/Index")
         for name in fields if self.n_steps == 0 else ():
             columns.link(f"Steps/FieldDataSizes/{name}", "Steps/One")
 
-    def _close_step(self, value: float) -> None:
-        self.columns.append_one("Steps/Values", value, np.float64)
-        self.columns.append_one("Steps/NumberOfParts", 1)
-        self.n_steps += 1
+    def _numbers(self, n: int) -> np.ndarray:
+        """Numbers of the next n steps."""
+        return self.n_steps + np.arange(n)
+
+    def _close_steps(self, values: np.ndarray) -> None:
+        self.columns.append("Steps/Values", values)
+        self.columns.append("Steps/NumberOfParts", np.ones(len(values), np.int64))
+        self.n_steps += len(values)
 
     def write_out(self) -> None:
         """What waits becomes part of the file."""
@@ -82,26 +85,30 @@ class GridSeries(_Series):
 
     def add(
         self,
-        value: float,
+        values: np.ndarray,
         points: np.ndarray,
         point_fields: Fields,
         cell_fields: Fields,
-        step_fields: Mapping,
+        step_fields: Fields,
     ) -> None:
-        """Append a step; the cell fields of the constructor are the same in all."""
-        columns = self.columns
-        columns.append_one("Steps/PointOffsets", columns.append("Points", points))
-        columns.append_one("Steps/CellSteps", self.n_steps * (self.n_cells if cell_fields else 0))
-        columns.append_one(_PARTS, 0)
+        """Append n steps, values (n,); what they have of points and cells lies one step behind the other.
+
+        The cell fields of the constructor are the same in all.
+        """
+        columns, n = self.columns, len(values)
+        start = columns.append("Points", points)
+        columns.append("Steps/PointOffsets", start + len(points) // n * np.arange(n))
+        columns.append("Steps/CellSteps", self._numbers(n) * (self.n_cells if cell_fields else 0))
+        columns.append(_PARTS, np.zeros(n, np.int64))
         self._append_fields("PointData", point_fields)
         self._append_fields("CellData", cell_fields)
-        self._append_step_fields(step_fields)
+        self._append_step_fields(n, step_fields)
         self._link_offsets("PointData", point_fields, "Steps/PointOffsets")
         self._link_offsets("CellData", cell_fields, "Steps/CellSteps")
         self._link_offsets("CellData", self.static, _PARTS)
         for name in ("CellOffsets", "ConnectivityIdOffsets") if self.n_steps == 0 else ():
             columns.link(f"Steps/{name}", _PARTS)
-        self._close_step(value)
+        self._close_steps(values)
 
 
 class PointSeries(_Series):
@@ -117,24 +124,30 @@ class PointSeries(_Series):
             self.root[f"{name}/Connectivity"] = np.zeros(0, dtype=np.int64)
             self.root[f"{name}/Offsets"] = np.zeros(1, dtype=np.int64)
 
-    def add(self, value: float, points: np.ndarray, point_fields: Fields, step_fields: Mapping) -> None:
-        """Append a step. All steps share one list of vertices, as long as the longest needs it."""
-        columns, count = self.columns, len(points)
-        columns.append_one("NumberOfPoints", count)
-        columns.append_one("Steps/NoCells", 0)
-        columns.append("Steps/CellOffsets", np.zeros((1, len(_CELL_KINDS)), dtype=np.int64))
-        columns.append_one(_PARTS, self.n_steps)
-        if count > self.longest:
-            columns.append("Vertices/Connectivity", np.arange(self.longest, count, dtype=np.int64))
-            columns.append("Vertices/Offsets", np.arange(self.longest + 1, count + 1, dtype=np.int64))
-            self.longest = count
-        columns.append_one("Steps/PointOffsets", columns.append("Points", points))
+    def add(
+        self, values: np.ndarray, counts: np.ndarray, points: np.ndarray, point_fields: Fields, step_fields: Fields
+    ) -> None:
+        """Append n steps with counts (n,) of the points, which lie one step behind the other, as their fields do.
+
+        All steps share one list of vertices, as long as the longest needs it.
+        """
+        columns, n, most = self.columns, len(values), int(counts.max())
+        columns.append("NumberOfPoints", counts)
+        columns.append("Steps/NoCells", np.zeros(n, np.int64))
+        columns.append("Steps/CellOffsets", np.zeros((n, len(_CELL_KINDS)), dtype=np.int64))
+        columns.append(_PARTS, self._numbers(n))
+        if most > self.longest:
+            columns.append("Vertices/Connectivity", np.arange(self.longest, most, dtype=np.int64))
+            columns.append("Vertices/Offsets", np.arange(self.longest + 1, most + 1, dtype=np.int64))
+            self.longest = most
+        start = columns.append("Points", points)
+        columns.append("Steps/PointOffsets", start + np.cumsum(counts) - counts)
         self._append_fields("PointData", point_fields)
-        self._append_step_fields(step_fields)
+        self._append_step_fields(n, step_fields)
         self._link_offsets("PointData", point_fields, "Steps/PointOffsets")
         if self.n_steps == 0:
             self._link_topology()
-        self._close_step(value)
+        self._close_steps(values)
 
     def _link_topology(self) -> None:
         self.columns.link("Steps/ConnectivityIdOffsets", "Steps/CellOffsets")

@@ -43,7 +43,7 @@ class Drawing(Protocol):
         """Ties and bars as lines over the blocks, as dark as the force in them."""
 
     def finish(self, axis: Any) -> None:
-        """What else a reader needs, over a picture whose limits are set."""
+        """Directions of the axes where they are not plain, over a picture whose limits are set."""
 
 
 def _in_plane(model: Model, frame: Frame | None, asked: Standpoint) -> Drawing:

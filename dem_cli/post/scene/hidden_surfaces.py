@@ -60,7 +60,7 @@ def window_of(low: np.ndarray, high: np.ndarray, most: int) -> Window:
 
 
 def seen_surface(places: np.ndarray, starts: np.ndarray, corners: np.ndarray, window: Window) -> SeenSurface:
-    """What is seen of convex faces, counter-clockwise seen from outside.
+    """Visible surface of convex faces, which are counter-clockwise seen from outside.
 
     places: corners as the picture has them, to the right, upwards, towards the reader [m], (n, 3); face f has
     corners[starts[f]:starts[f + 1]].

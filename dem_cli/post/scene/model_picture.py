@@ -24,7 +24,7 @@ _WIDTH, _NARROWEST, _TALLEST, _ROOM = 8.0, 5.4, 8.5, 1.15  # inches: of a pictur
 
 
 class ModelFacts(NamedTuple):
-    """What is said beside the drawing."""
+    """Text beside the drawing of a model."""
 
     title: str
     lines: Sequence[str]  # what the model is made of

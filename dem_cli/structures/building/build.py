@@ -160,7 +160,7 @@ def _set_up(elevation: WallCourses, named: Sequence[tuple[str, Stone]], cut: boo
         material = stone.material or elevation.table.material
         left = [behind_all(next(solids), each) for each in planes]
         shapes = tuple(to_plan(solid) for solid in left if solid is not None)
-        blocks.append(Block(name, shapes, material, course=stone.course))
+        blocks.append(Block(name, shapes, material, course=stone.course, row=stone.leaf))
     return blocks
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from dem_cli.case.base import KeyProblem
 from dem_cli.model.blocks import Block
 from dem_cli.structures import arch
-from dem_cli.structures.vaults.profile import arch_of, heads_along
+from dem_cli.structures.vaults.profile import arch_of, heads_along, side_of_crown
 from dem_cli.structures.vaults.table import Vault
 
 
@@ -23,10 +23,12 @@ def build_barrel(vault: Vault) -> list[Block]:
         message = f"{vault.offset:g} is not allowed; must be less than a stone is long, {stone:g}"
         raise KeyProblem(message, "offset")
     shift = stone / 2.0 if vault.offset is None else vault.offset
-    blocks = []
+    blocks, lift = list[Block](), section.piers.courses if section.piers else 0
     for block, course, odd in _courses(arch.build(section), section):
         places = heads_along(length, stone, shift if odd else 0.0)
-        blocks += cut_along(replace(block, course=course), places - length / 2.0) if course else [block]
+        row = side_of_crown(course - lift, int(block.id), section.voussoirs) if block.id.isdigit() else ""
+        laid = replace(block, course=course, row=row)
+        blocks += cut_along(laid, places - length / 2.0) if course else [block]
     return blocks
 
 

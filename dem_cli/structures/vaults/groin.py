@@ -11,6 +11,7 @@ from dem_cli.geometry.frusta import frustum, skewed
 from dem_cli.geometry.polyhedron import Polyhedron, box
 from dem_cli.model.blocks import Block
 from dem_cli.structures.arch import Pier
+from dem_cli.structures.vaults.profile import side_of_crown
 from dem_cli.structures.vaults.table import Vault
 from dem_cli.structures.vaults.webs import CORNERS, SIDES, Bay, along_x, along_y, at_corners, bay_of, mirrored, placed
 
@@ -33,7 +34,8 @@ def _stones(vault: Vault, bay: Bay) -> Iterator[Block]:
         for side in SIDES:
             own = pieces if inner else pieces[1:]
             for number, piece in enumerate(own, 1):
-                yield Block(f"{side}-{k + 1}-{number}", (placed(piece, bay, side),), "", course=course)
+                parts, row = (placed(piece, bay, side),), side_of_crown(course, k + 1, n)
+                yield Block(f"{side}-{k + 1}-{number}", parts, "", course=course, row=row)
         if not inner:
             yield from _astride(bay, pieces[0], k, course)
 

@@ -52,3 +52,12 @@ def heads_along(length: float, stone: float, shift: float) -> np.ndarray:
     inner = shift + stone * np.arange(int(np.ceil(length / stone)) + 1)
     least = stone / 4.0 * (1.0 - 1e-9)
     return np.concatenate([[0.0], inner[(inner >= least) & (inner <= length - least)], [length]])
+
+
+def side_of_crown(course: int, number: int, count: int) -> str:
+    """Row of a voussoir, by its course from the springing and its number from 1 of `count`: "" but next to a crown
+    joint, where the uppermost courses of both sides have the same number and meet in a bed.
+    """
+    if 2 * course != count:
+        return ""
+    return "left" if number == course else "right"

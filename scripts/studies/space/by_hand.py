@@ -128,14 +128,15 @@ def octagonal_drums(azimuth: float) -> ByHand:
 
 
 def twisted_block() -> ByHand:
-    """A cube under a couple about the vertical: points at the corners carry μ N a/√2, uniform pressure 0.383 μ N a."""
+    """A cube under a couple about the vertical: μ N times the mean distance of its face from the centre, 0.383 a."""
     a, mu = 0.5, 0.4
     case = block_on_ground((a, a, a), friction=mu)
     pair = [((0.0, 0.5 * a, 0.5 * a), -1.0), ((a, 0.5 * a, 0.5 * a), 1.0)]
     loads = [{"block": "block", "force": [0.0, sign, 0.0], "at": list(at), "kind": "live"} for at, sign in pair]
     weight = 2000.0 * 9.81 * a**3
     case |= {"load": loads, "analysis": {"kind": "pushover", "pattern": "live", "max_load": 1e5}}
-    return ByHand(case, mu * weight / math.sqrt(2.0), "μ W a / √2 over the arm a", TWISTED)
+    arm = (math.sqrt(2.0) + math.asinh(1.0)) / 6.0
+    return ByHand(case, mu * weight * arm, "μ W (√2 + asinh 1) / 6", TWISTED)
 
 
 BY_HAND: dict[str, ByHand] = {

@@ -324,7 +324,7 @@ def test_loads_turn_with_the_case(case_of):
     assert np.abs(found[0][0]).max() > 1.0
     sizes = np.abs(found[0]).reshape(4, -1).max(axis=1)
     errors = np.abs(found[1] - found[0]).reshape(4, -1).max(axis=1)
-    assert (errors[[0, 2, 3]] <= 2e-12 * sizes[[0, 2, 3]]).all()  # sums are written out, without BLAS
+    assert (errors[[0, 2, 3]] <= 2e-12 * sizes[[0, 2, 3]]).all()  # depths are those in strips of a micrometre
     assert errors[1] <= 1e-9  # a disc of a micrometre
 
 

@@ -35,6 +35,7 @@ LIVE = '[[load]]\nblock = "wall-6-1"\nforce = [100.0, 0.0]\nkind = "live"\n'
 PRESSED = '[[load]]\nblock = "wall-6-1"\nforce = [0.0, -4e3]\n'
 PRESS = "load.0: dead loads of 4e+03 N beside blocks of 8.48e+03 N press, but"
 DRAWN = "what is a mass, such as a roof or a floor, is drawn as a block"
+SHARE = "inertia = true gives a load its share"
 UNSHAKEN = 'duration = 1.0\n[[motion]]\nkind = "none"\n'
 
 
@@ -81,7 +82,7 @@ UNITS = [
      "fixed: a load on it changes nothing"),
     ('"gravity"', '"gravity"\n[[load]]\nblock = "wall-6-1"\nforce = [1.0, 0.0]\nat = [-0.5, 1.1]', "load.0.at: "
      "[-0.5, 1.1] is 0.5 m off block 'wall-6-1': an arm that turns it"),
-    ('"gravity"', f'"pushover"\n{PRESSED}', f"{PRESS} are no part of the live load: {DRAWN}"),
+    ('"gravity"', f'"pushover"\n{PRESSED}', f"{PRESS} are no part of the live load: {SHARE}"),
     ('"gravity"', f'"time-history"\n{UNSHAKEN}{PRESSED}', f"{PRESS} have no inertia: {DRAWN}"),
     ('"gravity"', '"pushover"\npattern = "live"\n' + LIVE.replace("100.0", "1.3"), "load.0.force: live loads of "
      "1.3 N in all beside a weight of 8.48e+03 N; did you mean kN?"),

@@ -75,7 +75,8 @@ def test_layers_share_what_a_planar_point_carries():
 
 @pytest.mark.parametrize("d", [2, 3])
 def test_forces_are_those_of_the_points_one_by_one(d):
-    """Random joints against each point's own velocity and the moment of its force, in numpy."""
+    """Random joints against each point's own velocity and the moment of its force, in numpy; in space friction acts
+    nearer to the centre of pressure of the step before."""
     rng, r, n_blocks, n = np.random.default_rng(d), d * (d - 1) // 2, 5, 12
     starts = np.concatenate([[0], np.cumsum(rng.integers(1, 6, n))])
     directions = np.linalg.qr(rng.normal(size=(n, d, d)))[0]
@@ -88,9 +89,12 @@ def test_forces_are_those_of_the_points_one_by_one(d):
         arms=np.ascontiguousarray((anchors[:, None] - centroids[blocks]).reshape(n, -1)),
         places=rng.normal(size=(starts[-1], d - 1)), kn=rng.uniform(1.0, 2.0, starts[-1]),
         ks=rng.uniform(0.5, 1.0, starts[-1]), law=np.full((n, 1), 0.4),
+        torsion=rng.uniform(0.4, 1.0, n if d == 3 else 0),
     )  # fmt: skip
     contacts = empty_contacts(n, int(starts[-1]), d, 0)
     contacts.gaps[:] = rng.uniform(-1.0, 0.2, starts[-1])
+    contacts.normal[:] = before = rng.uniform(0.0, 1.0, starts[-1]) if d == 3 else np.zeros(starts[-1])
+    before = before.copy()
     gaps, owners, dt = contacts.gaps.copy(), joints.owners, 0.1
     sim = simulation(tables(block("base", rectangle(0, -1, 2, 0), fixed=True), block("b", rectangle(0, 0, 1, 1))))
     velocities, forces = rng.normal(size=(n_blocks, d + r)), np.zeros((n_blocks, d + r))
@@ -100,20 +104,30 @@ def test_forces_are_those_of_the_points_one_by_one(d):
     expected, work = np.zeros_like(forces), 0.0
     for p, j in enumerate(owners):
         frame, point = directions[j], anchors[j] + joints.places[p] @ directions[j, 1:]
-        moved = dt * np.diff([velocity(point - centroids[i], velocities[i]) for i in blocks[j]], axis=0)[0]
-        gap = gaps[p] + frame[0] @ moved
+        gap = gaps[p] + frame[0] @ apart(point, centroids, velocities, blocks[j], dt)
+        own = slice(starts[j], starts[j + 1])
+        rubs = point
+        if d == 3:
+            centre = anchors[j] + np.average(joints.places[own], axis=0, weights=before[own]) @ directions[j, 1:]
+            rubs = centre + joints.torsion[j] * (point - centre)
+        moved = apart(rubs, centroids, velocities, blocks[j], dt)
         assert contacts.gaps[p] == pytest.approx(gap, abs=1e-14)
         normal, trial = joints.kn[p] * max(-gap, 0.0), -joints.ks[p] * frame[1:] @ moved
         shear = trial * min(1.0, 0.4 * normal / np.linalg.norm(trial))
         if gap < 0.0:
             work -= 0.5 * shear @ (frame[1:] @ moved + shear / joints.ks[p])
-        force = normal * frame[0] + shear @ frame[1:]
         for i, sign in zip(blocks[j], (-1.0, 1.0)):
-            expected[i] += sign * np.append(force, moment(point - centroids[i], force))
+            for force, at in ((normal * frame[0], point), (shear @ frame[1:], rubs)):
+                expected[i] += sign * np.append(force, moment(at - centroids[i], force))
         assert np.append(contacts.normal[p], contacts.shear[p]) == pytest.approx(np.append(normal, shear), abs=1e-13)
     assert 0 < (contacts.slip > 0).sum() < (contacts.normal > 0).sum() < len(owners)
     assert forces == pytest.approx(expected, abs=1e-12)
     assert lost == pytest.approx(work, rel=1e-12)
+
+
+def apart(point: np.ndarray, centroids: np.ndarray, velocities: np.ndarray, pair: np.ndarray, dt: float) -> np.ndarray:
+    """How far the second of two blocks moves against the first at a point in a step."""
+    return dt * np.diff([velocity(point - centroids[i], velocities[i]) for i in pair], axis=0)[0]
 
 
 def velocity(arm: np.ndarray, motion: np.ndarray) -> np.ndarray:

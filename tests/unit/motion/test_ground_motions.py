@@ -191,7 +191,8 @@ WRONG = {  # text, line after the first [motion], what is said
     ),
     "too short": (
         ARTIFICIAL + 'spectrum = "EC8-1"\nsoil = "B"\nag = 2.0\nduration = 8.0', 5,
-        "motion.duration: 8 s is not allowed; rise + plateau = 12 s is longer than that",
+        "motion.duration: 8 s is not allowed; rise + plateau = 12 s is longer than that "
+        "(rise = 2 and plateau = 10 where the case gives none: shorten them too)",
     ),
 }  # fmt: skip
 

@@ -26,20 +26,6 @@ def test_rows_wait_as_they_were_appended():
         assert len(file["field"]) == 3
 
 
-def test_single_numbers_wait_with_their_type():
-    with h5py.File(io.BytesIO(), "w") as file:
-        group = GrowingGroup(file, {})
-        for k in range(3):
-            group.append_one("step", k)
-            group.append_one("time", 0.5 * k, np.float64)
-        group.write_out()
-        group.append_one("step", 3)
-        group.write_out()
-        assert {name: (data.dtype, data[:].tolist()) for name, data in file.items()} == {
-            "step": (np.int64, [0, 1, 2, 3]), "time": (np.float64, [0.0, 0.5, 1.0]),
-        }  # fmt: skip
-
-
 def test_a_dataset_that_is_there_is_taken_unless_made_for_fewer_rows():
     with h5py.File(io.BytesIO(), "w") as file:
         names = ("few", "many", "none")

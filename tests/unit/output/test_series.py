@@ -77,7 +77,8 @@ def test_peaks_keep_their_sign_over_all_stretches(tmp_path):
     writer.abandon()
 
 
-def test_a_killed_run_has_all_up_to_the_last_flush(tmp_path):
+def test_a_killed_run_has_all_up_to_the_last_flush(tmp_path, monkeypatch):
+    monkeypatch.setattr("dem_cli.output.store._BUFFERED_SAMPLES", 1024)
     writer = writer_in(tmp_path)
     for samples in stretches():
         writer.samples(samples)

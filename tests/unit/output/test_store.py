@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
+import engine
 import h5py
 import numpy as np
 import pytest
 from synthetic import history_rows, wall_frames, wall_model, wall_summary
 
+from dem_cli.contact.drawn_joints import DrawnJoints
 from dem_cli.errors import UsageError
+from dem_cli.model.model import Model
 from dem_cli.output.reader import read
-from dem_cli.output.record import Energy, Frame
+from dem_cli.output.record import ContactRecord, Energy, Frame, Samples
 from dem_cli.output.store import ResultWriter
 from dem_cli.output.summary import ordered, to_json
 
@@ -158,7 +162,7 @@ def test_summary_is_strict_json_in_a_fixed_order():
 
 
 @pytest.mark.parametrize(("kind", "steps", "on_disk"), [
-    ("pushover", 1, 3), ("time-history", 1, 1), ("time-history", 10_000_000, 3),
+    ("pushover", 1, 3), ("time-history", 1, 1), ("time-history", 30_000_000, 3),
 ])  # fmt: skip
 def test_frames_of_a_history_wait_for_each_other(tmp_path, kind, steps, on_disk):
     """Putting each on disk took a quarter of a short history; one that many steps lead to goes at once."""
@@ -171,3 +175,81 @@ def test_frames_of_a_history_wait_for_each_other(tmp_path, kind, steps, on_disk)
     writer.close(wall_summary())
     with h5py.File(tmp_path / "results.h5") as file:
         assert len(file["dem/frames/step"]) == 3
+
+
+def test_rows_and_samples_of_a_history_without_frames_reach_the_disk_with_the_work(tmp_path):
+    """What a kill leaves is of the last seconds, also where no frame is wanted and samples are few."""
+    writer = ResultWriter(tmp_path, wall_model(), "", {}, ["top"], "time-history")
+    rows = [row._replace(step=10_000 * k) for k, row in enumerate(history_rows(wall_frames(wall_model()))[:100])]
+    known = 0
+    for k, row in enumerate(rows):
+        writer.samples(Samples(np.array([0.1 * k]), np.zeros((1, 3, 2)), np.zeros((1, 1))))
+        writer.row(row)
+        with h5py.File(tmp_path / "results.h5") as file:
+            steps = len(file["dem/history/step"])
+            assert len(file["dem/series/time"]) == steps if steps else True
+        known = max(known, steps)
+        assert k - known < 60  # 600,000 steps of some contact points: two seconds
+    assert known > 50
+    writer.abandon()
+
+
+def everything(path: Path) -> dict[str, bytes]:
+    """Raw bytes of all numbers of a file."""
+    found = {}
+    with h5py.File(path) as file:
+        for top in ("dem", "VTKHDF") if path.name == "results.h5" else ("VTKHDF",):
+            if not isinstance(file.get(top, getlink=True), h5py.ExternalLink):
+                file[top].visititems(lambda name, item: found.__setitem__(f"/{name}", raw_of(item)))
+    return found
+
+
+def raw_of(item: h5py.Dataset | h5py.Group) -> bytes:
+    if isinstance(item, h5py.Group) or item.dtype == object:
+        return b""
+    return str((item.dtype, item.shape)).encode() + item[()].tobytes()
+
+
+def prism_frames() -> tuple[Model, list[Frame]]:
+    """Two prisms on each other in space, tumbling; from frame to frame there are more contact points."""
+    tables = [
+        {"id": "below", "polygon": [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], "y": [0.0, 0.5], "fixed": True},
+        {"id": "above", "polygon": [[0.1, 1.0], [0.9, 1.0], [0.5, 1.8]], "y": [0.0, 0.4]},
+    ]
+    made = {"dimension": 3, "joints": {"j": {"friction": 0.7}}, "analysis": {"kind": "gravity"}}
+    model = engine.scene({**engine.tables(*tables), **made}).model
+    random, frames = np.random.default_rng(5), []
+    for k in range(5):
+        turns = random.normal(size=(2, 4))
+        n = 2 + k
+        contacts = ContactRecord(
+            np.zeros(n, np.int64), np.tile([0, 1], (n, 1)), random.normal(size=(n, 3)), random.normal(size=(n, 3)),
+            random.normal(size=n), random.normal(size=(n, 2)), random.normal(size=n), random.normal(size=n),
+            np.ones(n, np.int8), random.normal(size=(n, 3)),
+        )  # fmt: skip
+        frames.append(Frame(
+            "shaking", k, 0.1 * k, 0.2, random.normal(size=(2, 3)), turns / np.linalg.norm(turns, axis=1)[:, None],
+            random.normal(size=(2, 6)), contacts, 0.01 * k,
+        ))  # fmt: skip
+    return model, frames
+
+
+@pytest.mark.parametrize("spatial", [False, True])
+def test_frames_that_waited_are_those_written_one_by_one(tmp_path, monkeypatch, spatial):
+    """In every file, to the last bit: they are worked out together as copies of one structure."""
+    model, frames = prism_frames() if spatial else (wall_model(), wall_frames(wall_model())[:9])
+    stored = []
+    for name, work in (("together", 10**12), ("alone", 0)):
+        monkeypatch.setattr("dem_cli.output.store._UNFLUSHED", work)
+        folder = tmp_path / name
+        folder.mkdir()
+        writer = ResultWriter(folder, model, "", {}, (), "time-history")
+        writer.follow(DrawnJoints)
+        for k, frame in enumerate(frames):
+            writer.frame(frame._replace(step=k))
+        writer.close(wall_summary())
+        files = [folder / "results.h5", *sorted(folder.glob("*.vtkhdf"))]
+        stored.append({f"{path.name}{name}": raw for path in files for name, raw in everything(path).items()})
+    assert stored[0].keys() == stored[1].keys()
+    assert [name for name in stored[0] if stored[0][name] != stored[1][name]] == []
+    assert sum("joints.vtkhdf" in name for name in stored[0]) > 5

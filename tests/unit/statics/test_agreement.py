@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from dem_cli.statics.agreement import CREEP, PATH, doubts, histories, load_range, percent
+from dem_cli.statics.agreement import CREEP, PATH, doubts, histories, load_range, percent, unique
 
 RESOLUTION = 0.002
 
@@ -63,3 +63,21 @@ def test_shares_are_written_in_full():
     assert [percent(share) for share in (0.00184, 0.02, 0.994, 0.996, 1.07, -3.0)] == [
         "0.18 %", "2 %", "99 %", "100 %", "107 %", "-300 %",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("bracket", "none_slides", "expected"),
+    [
+        ((0.36, 0.3607), True, True),
+        ((0.36, 0.3607), False, False),  # some mechanism of the bound slides
+        ((0.3611, 0.3618), True, False),  # above the bound
+        ((0.35, 0.3507), True, False),  # fails below it
+        ((0.3593, 0.36), True, True),  # at its edge
+        ((0.36, None), True, False),
+    ],
+)
+def test_no_other_load_is_possible_where_the_bracket_holds_the_bound_and_nothing_slides(bracket, none_slides, expected):
+    asked = search(0.36, bound=0.3602 if bracket[0] != 0.3593 else 0.36)
+    asked.low, asked.high = bracket
+    asked.limits.none_slides = none_slides
+    assert unique(asked) is expected

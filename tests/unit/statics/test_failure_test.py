@@ -14,7 +14,7 @@ from dem_cli.kernels import records as slot
 from dem_cli.model.scales import depth
 from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import relax, settle_or_fail, stand
-from dem_cli.statics.failure_test import FailureTest, displaced
+from dem_cli.statics.failure_test import FailureTest, displaced, moved_far
 
 GROUND = block("ground", rectangle(-3, -1, 6, 0), fixed=True)
 NEEDLE = block("needle", rectangle(0, 0, 0.25, 1))
@@ -87,6 +87,44 @@ def test_rest_after_toppling_names_the_block():
     verdict = settle_or_fail(sim, 0.0, Budget(200_000), scale, since=since)
     assert (verdict.state, verdict.block) == ("failure", "needle")
     assert displaced(sim, sim.places(), scale) is None
+
+
+def _pier(n: int, side: float = 0.3) -> list[dict]:
+    """Square blocks on each other on a base."""
+    base = block("base", rectangle(-1.0, -0.3, 1.5, 0.0), fixed=True)
+    return [base, *(block(f"b{i}", rectangle(0.0, side * i, side, side * (i + 1))) for i in range(n))]
+
+
+@pytest.mark.parametrize("force", [5000.0, 10_000.0])
+def test_a_cantilever_that_bends_by_much_of_its_width_stands(force):
+    """Elastic joints that hold whatever comes; its end has moved by F Σ z²/K, K = kn b³/12, and a little more."""
+    joints = {"j": {"law": "elastic", "kn": 3.33e9, "ks": 1.332e9}}
+    pull = [{"block": "b9", "force": [force, 0.0], "at": [0.15, 3.0]}]
+    sim = simulation(tables(*_pier(10), joints=joints, load=pull), "large")
+    start = sim.places()
+    assert stand(sim, Budget(100_000)).state == "equilibrium"
+    levers = 3.0 - 0.3 * np.arange(10)
+    turned = force * levers / (3.33e9 * 0.3**3 / 12.0)
+    slid = 10 * force / (1.332e9 * 0.3)
+    exact = (turned * (levers - 0.15)).sum() + slid  # of the centroid of the last block
+    assert sim.places()[-1, 0] - start[-1, 0] == pytest.approx(exact, rel=0.05)
+    block_far, distance = moved_far(sim, start)
+    assert sim.model.block_ids[block_far] == "b9"
+    assert distance == pytest.approx(exact, rel=0.05)
+
+
+def test_a_tower_that_lies_on_the_ground_does_not_stand():
+    """Its blocks kept their places against each other, and the lowest one stands on no joint of before."""
+    joints = {"dry": {"friction": 1.0, "kn": 1e9}}
+    sim = simulation(tables(*_pier(2), joints=joints), "large")
+    assert stand(sim, Budget(100_000)).state == "equilibrium"
+    scale, since = measures.dead_scale(sim), sim.places()
+    sim.bodies.positions[1:], sim.bodies.orientations[1:] = [(0.45, 0.15), (0.75, 0.15)], -np.pi / 2
+    sim.bodies.corners[:] = world_corners(sim.shape, sim.bodies.positions, sim.bodies.orientations)
+    sim.detect()
+    verdict = settle_or_fail(sim, 0.0, Budget(200_000), scale, since=since)
+    assert verdict.state == "failure"
+    assert verdict.block in ("b0", "b1")
 
 
 def test_a_small_fall_onto_the_ground_is_no_failure():

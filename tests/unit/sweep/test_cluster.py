@@ -70,7 +70,6 @@ def test_a_sweep_says_so(tmp_path, monkeypatch):
     assert "warning: --scheduler tcp://head:8786: whoever reaches this scheduler can run code on its workers" in said
 
 
-@pytest.mark.slow
 def test_a_job_that_kills_its_workers(tmp_path):
     pytest.importorskip("distributed")
     (tmp_path / "deadly.py").write_text(SCRIPT, encoding="utf-8")

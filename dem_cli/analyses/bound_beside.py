@@ -1,0 +1,166 @@
+"""Bound beside a failure load: the associated load of limit analysis, for any kinematics, control, stiffness and law.
+
+Above that of the geometry of the start no forces inside the friction cones are in equilibrium. A structure may carry
+more after its blocks have moved: then the bound of the geometry that it rests in says so. Where this one lies below the
+load as well, the run is not to be trusted.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from dem_cli.engine import measures
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.errors import UsageError
+from dem_cli.output.record import ABOVE
+from dem_cli.statics.failure_bracket import OK
+
+if TYPE_CHECKING:
+    from dem_cli.engine.job import Job
+    from dem_cli.engine.simulation import Simulation
+    from dem_cli.limit.analysis import LimitLoads
+    from dem_cli.statics.failure_bracket import FailureLoad
+
+WIDEST = 0.1  # of the smallest edge: gaps between blocks that have moved, over which faces still touch at most
+
+
+class Moved(NamedTuple):
+    """What is known of the state in which a load above the bound was carried."""
+
+    displacement: float  # largest of a block, since it rested under its dead loads [m]
+    bound: float | None  # associated load of the geometry there; None: not known, or there is none
+
+
+class StartBound:
+    """The associated load of the geometry of the start, found when first asked for.
+
+    why_not: why there is none, in words, once `loads` was asked for; None: there is one.
+    """
+
+    def __init__(self, job: Job) -> None:
+        self.job, self.why_not = job, None
+        self.asked = bool(job.case.analysis.limit)
+
+    why_not: str | None
+
+    @cached_property
+    def loads(self) -> LimitLoads | None:
+        """Limit analysis of the start, with the path where the case asks for it; None, with `why_not`, without any."""
+        job = self.job
+        job.clock.imported("dem_cli.limit.analysis")
+        from dem_cli.limit.analysis import limit_loads, require_scalable, taken_as_plane
+
+        properties, law = joint_properties(job.case, job.model, job.stiffness("fixed")), law_of(job.case)
+        note = taken_as_plane(properties)
+        if note and self.asked:
+            job.warnings.append(note)
+        elif note:
+            self.why_not = note
+            return None
+        job.clock.progress("limit analysis", 0.0, 0.0, None)
+        try:
+            if job.case.analysis.pattern == "tilt":
+                require_scalable(job.model, properties, law)
+            loads = limit_loads(job.model, properties, law, associated_only=not self.asked, settings=job.settings.limit)
+        except UsageError as error:
+            self.why_not = str(error)
+            if self.asked:
+                job.warnings.append(f"no limit analysis: {error}")
+            return None
+        if loads.associated.upper is None:
+            self.why_not = f"limit analysis says: {loads.associated.status}"
+        return loads
+
+
+def beside(job: Job, search: FailureLoad, sim: Simulation, start: StartBound) -> dict[str, Any]:
+    """Keys of the summary that say what bounds the load of a search, or why nothing does; warns where it is above.
+
+    sim: that of the search; it is left as it was.
+    """
+    limits = search.limits
+    if limits is None or not search.low:
+        return {}
+    if job.case.analysis.limit:
+        _ = limits.path  # asked for
+    loads = limits.loads() or start.loads
+    found: dict[str, Any] = {}
+    if loads is not None and (start.asked or loads.associated.upper is not None):
+        found["limit_analysis"] = {key: value for key, value in loads.summary().items() if not key.endswith("seconds")}
+    if loads is None or loads.associated.upper is None:
+        return found | {"no_bound": start.why_not or f"limit analysis says: {loads.associated.status}"}  # type: ignore
+    bound, resolution = loads.associated.upper, job.case.analysis.resolution
+    job.warnings += _clamped(job, search, bound)
+    if not is_above(search.low, bound, resolution):
+        return found
+    moved = _moved(job, search, sim)
+    told = {"bound": bound, "displacement": moved.displacement, "bound_where_it_rests": moved.bound}
+    explained = moved.bound is not None and not is_above(search.low, moved.bound, resolution)
+    job.warnings.append(in_words(search.low, bound, moved, explained))
+    return found | {"above_the_bound": told | {"explained": explained}}
+
+
+def is_above(load: float, bound: float, resolution: float) -> bool:
+    """Whether a load lies above its bound by more than the resolution."""
+    return load - bound > resolution * abs(bound)
+
+
+def in_words(load: float, bound: float, moved: Moved, explained: bool) -> str:
+    """The warning for a load above its bound; explained: by how far blocks had moved."""
+    if explained:
+        return (
+            f"the failure load {load:.5g} lies above {bound:.5g}, which the geometry of the start can carry at most: "
+            f"it is that of blocks that have moved by {moved.displacement:.3g} m"
+        )
+    there = "" if moved.bound is None else f" ({moved.bound:.5g} where blocks had moved by {moved.displacement:.3g} m)"
+    return (
+        f"the failure load {load:.5g} lies above {bound:.5g}, which no structure of this geometry can carry{there}: "
+        "do not trust this run"
+    )
+
+
+def status_beside(status: str, found: dict[str, Any]) -> str:
+    """The status of a run with what `beside` found: a load that nothing explains is not "ok"."""
+    above = found.get("above_the_bound")
+    return ABOVE if above is not None and not above["explained"] and status == OK else status
+
+
+def _clamped(job: Job, search: FailureLoad, bound: float) -> list[str]:
+    """A word where ties or bars hold more in the associated load, as joints that slide open in it, than in the run."""
+    limits = search.limits
+    if not (job.model.links and search.found and limits is not None and limits.slides):
+        return []
+    if search.carried > (1.0 - job.settings.doubts.clamped) * bound:
+        return []
+    return [
+        f"ties or bars may hold more in the associated load {bound:.5g} than in the run: joints that slide open in it, "
+        "which stretches what crosses them; without that, friction alone holds them"
+    ]
+
+
+def _moved(job: Job, search: FailureLoad, sim: Simulation) -> Moved:
+    """How far blocks had moved in the highest equilibrium, and what limit analysis says of the geometry there."""
+    end = sim.save()
+    sim.restore(search.standing)
+    try:
+        displacement = max(measures.largest_displacement(sim) - search.settled, 0.0)
+        return Moved(displacement, _bound_there(job, sim, displacement))
+    except UsageError:
+        return Moved(displacement, None)
+    finally:
+        sim.restore(end)
+
+
+def _bound_there(job: Job, sim: Simulation, displacement: float) -> float | None:
+    """The associated load of the blocks of a simulation where they are, on faces as drawn; with fixed geometry on the
+    joints of the start with the gaps that have closed since. displacement: how far they have moved [m].
+    """
+    from dem_cli.limit.analysis import load_of_points, load_where_it_rests
+
+    settings, law = job.settings.limit, sim.law
+    if sim.kinematics == "fixed":
+        return load_of_points(sim.model, sim.joints, sim.measured().gaps <= 0.0, law, settings).upper
+    dead, live = sim.present_loads()
+    model = sim.model._replace(dead_loads=dead, live_loads=live)
+    touch = 2.0 * measures.largest_overlap(sim), min(WIDEST * sim.smallest, 10.0 * displacement)
+    return load_where_it_rests(model, sim.properties, law, sim.bodies, touch, settings).upper
