@@ -32,9 +32,9 @@ def buckles(sim: Simulation, budget: Budget) -> int | None:
     """The block that moves most in the shape in which an equilibrium buckles; None: it is stable.
 
     sim: at rest; left as it was. Only where geometry moves on joints of a given stiffness, the only ones that say
-    anything of buckling; else None.
+    anything of buckling, and that have no profile: blocks roll over its sides and come to rest again. Else None.
     """
-    if sim.kinematics != "large" or not sim.properties.given or not len(sim.free):
+    if sim.kinematics != "large" or not sim.properties.given or sim.properties.rough or not len(sim.free):
         return None
     shape = _unstable_shape(sim)
     if shape is None:
