@@ -26,7 +26,7 @@ WIDEST = 0.1  # of the smallest edge: gaps between blocks that have moved, over 
 
 
 class Moved(NamedTuple):
-    """What is known of the state in which a load above the bound was carried."""
+    """The state in which a load above the bound was carried: how far blocks had moved, and the bound there."""
 
     displacement: float  # largest of a block, since it rested under its dead loads [m]
     bound: float | None  # associated load of the geometry there; None: not known, or there is none
@@ -39,10 +39,9 @@ class StartBound:
     """
 
     def __init__(self, job: Job) -> None:
-        self.job, self.why_not = job, None
+        self.job = job
+        self.why_not: str | None = None
         self.asked = bool(job.case.analysis.limit)
-
-    why_not: str | None
 
     @cached_property
     def loads(self) -> LimitLoads | None:
@@ -87,8 +86,10 @@ def beside(job: Job, search: FailureLoad, sim: Simulation, start: StartBound) ->
     found: dict[str, Any] = {}
     if loads is not None and (start.asked or loads.associated.upper is not None):
         found["limit_analysis"] = {key: value for key, value in loads.summary().items() if not key.endswith("seconds")}
-    if loads is None or loads.associated.upper is None:
-        return found | {"no_bound": start.why_not or f"limit analysis says: {loads.associated.status}"}  # type: ignore
+    if loads is None:
+        return found | {"no_bound": start.why_not}
+    if loads.associated.upper is None:
+        return found | {"no_bound": start.why_not or f"limit analysis says: {loads.associated.status}"}
     bound, resolution = loads.associated.upper, job.case.analysis.resolution
     job.warnings += _clamped(job, search, bound)
     if not is_above(search.low, bound, resolution):

@@ -205,13 +205,17 @@ def test_a_wall_out_of_its_plane_is_not_taken_at_its_bound(out_of_plane, tmp_pat
 
 
 def test_joints_that_lock_because_they_dilate_fail_all_the_same(out_of_plane):
-    """At μ = 0.7 no load makes dilating joints fail; others do, at 1.335 in a run that raises the load from gravity."""
+    """At μ = 0.7 no load makes dilating joints fail; others do at 1.64 with friction at their corners, between posts
+    that hold the ends, and with that of a spread pressure at 1.335 in a run that raises the load from gravity.
+    """
     answer = dem("limit", out_of_plane)
     assert "associated     no load of this direction makes it fail, if joints dilate as they slide" in answer.stdout
     assert "\n  status" not in answer.stdout
     limits = json.loads(dem("limit", out_of_plane, "--json").stdout)["limit_analysis"]
     assert limits["associated"] is limits["associated_head_friction"] is None
     assert limits["non_associated"] == pytest.approx(1.335, rel=0.04)
+    corners = dem("limit", out_of_plane, "--set", "joints.dry.points='vertices'", "--json").stdout
+    assert json.loads(corners)["limit_analysis"]["non_associated"] == pytest.approx(1.64, rel=0.03)
 
 
 @pytest.mark.parametrize("bound", ["--lower", "--least"])
