@@ -14,16 +14,16 @@ VAULT = {"kind": "vault", "shape": "groin", "span": 4.0, "voussoirs": 11, "rows"
 THICKNESSES, FRICTION = (0.2, 0.3, 0.4), 0.7
 
 
-def measure(thicknesses: Sequence[float] = THICKNESSES) -> dict[str, Any]:
-    """Supports one by one, and the range, of a groin vault and of a cloister vault."""
-    return {"rows": measured("groin", thicknesses), "cloister": measured("cloister", thicknesses)}
+def measure(thicknesses: Sequence[float] = THICKNESSES, **joint: Any) -> dict[str, Any]:
+    """Supports one by one, and the range, of a groin vault and of a cloister vault; joint: more keys of its joints."""
+    return {"rows": measured("groin", thicknesses, **joint), "cloister": measured("cloister", thicknesses, **joint)}
 
 
-def measured(shape: str, thicknesses: Sequence[float]) -> list[dict[str, Any]]:
+def measured(shape: str, thicknesses: Sequence[float], **joint: Any) -> list[dict[str, Any]]:
     """Of each thickness the forces on supports over the weight, and the range of the thrust per support."""
-    rows = []
+    rows, rough = [], {"friction": FRICTION, **joint}
     for thickness in thicknesses:
-        done = solved(VAULT | {"shape": shape, "thickness": thickness}, {"friction": FRICTION}, {"kind": "gravity"})
+        done = solved(VAULT | {"shape": shape, "thickness": thickness}, rough, {"kind": "gravity"})
         supports = on_supports(done.model, last_contacts(done))
         contacts, model = last_contacts(done), done.model
         low, high = thrust_range(contacts, model.centroids, model.masses * GRAVITY, model.fixed, FRICTION)
