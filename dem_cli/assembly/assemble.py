@@ -207,7 +207,7 @@ def _pieces(case: Case, blocks: Sequence[Block]) -> np.ndarray:
 
 
 def _courses(case: Case, blocks: Sequence[Block]) -> np.ndarray:
-    """As Model.courses; nothing where head joints are like others, or no block lies in a course."""
+    """Course and row of each block, as Model.courses has them; empty where head joints are like others."""
     if all(joint.head is None for joint in case.joints.values()) or not any(block.course for block in blocks):
         return NO_COURSES
     laid = [(block.path, block.course) for block in blocks]

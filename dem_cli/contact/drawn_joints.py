@@ -42,7 +42,7 @@ class DrawnJoints:
         self.places = joint_places(self.faces)
 
     def _follow(self, faces: DrawnFaces, centroids: np.ndarray) -> None:
-        """What is followed: joints sorted by their keys, of blocks whose centroids [m] were here when it was drawn."""
+        """Keep the joints to follow, sorted by their keys; centroids of their blocks as drawn [m], (n_blocks, d)."""
         self.faces, self.centroids = faces, centroids
         self.keys = _keys(faces.blocks, len(centroids))
         self.owners = np.repeat(np.arange(len(faces.areas)), np.diff(self.faces.starts))
@@ -59,7 +59,7 @@ class DrawnJoints:
         return found
 
     def at(self, positions: np.ndarray, orientations: np.ndarray, contacts: ContactRecord) -> JointInstant:
-        """Where the blocks are (centroids [m], (n_blocks, d), and how they have turned), under these forces.
+        """Joints of blocks that have moved to these centroids [m], (n_blocks, d), and turned, under contact forces.
 
         Of several instants as output.record.FrameStack has them: the joints of each lie behind those before.
         """

@@ -53,7 +53,7 @@ class DrawnFaces(NamedTuple):
         )  # fmt: skip
 
     def copies(self, count: int, n_blocks: int) -> DrawnFaces:
-        """Those of so many copies of a structure of n_blocks blocks; blocks and places are numbered through."""
+        """Faces of several copies of a structure, one behind the other; blocks and places are numbered through."""
         starts = numbered_through(self.starts[:-1], self.starts[-1], count)
         normals, *others = (repeated(values, count) for values in (self.normals, *self[3:]))
         blocks = numbered_through(self.blocks, n_blocks, count)
@@ -125,7 +125,7 @@ class JointProperties(NamedTuple):
         return model.joints_between(self.by_material, blocks, heads)
 
     def acting(self, model: Model, faces: Faces) -> Faces:
-        """Those of some faces between which anything can act: not those in head joints that are not filled."""
+        """Faces between which anything can act: without those in head joints that are not filled."""
         if self.heads is None or (self.heads >= 0).all():
             return faces
         return faces.where(self.between(model, model.part_blocks[faces.parts]) >= 0)

@@ -137,7 +137,7 @@ def _controlled(turn: Mapping[str, Any]) -> float:
 
 
 def _standing_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """That a structure stands under its dead loads, and how far blocks moved until then, where that is far."""
+    """Words of a structure that stands under its dead loads; how far blocks moved until then, where that is far."""
     if summary.get("kind") != "gravity" or summary["status"] != "ok":
         return []
     far = summary.get("moved_far")
@@ -151,7 +151,7 @@ def explained(summary: Mapping[str, Any]) -> bool:
 
 
 def _moved_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """What comes before a failure load that only blocks can carry that have moved: the load of the first motion."""
+    """Load of the first motion, which comes before a failure load that only blocks can carry that have moved."""
     if not explained(summary):
         return []
     above = summary["above_the_bound"]
