@@ -26,7 +26,7 @@ def build_joints(
     """
     narrow = (motion_of if moves else geometry_of)(model.dimension)
     joints, geometry = narrow.points(model, faces, bodies.corners, properties, chains)
-    contacts = empty_contacts(len(joints.blocks), len(joints.kn), model.dimension, n_memory)
+    contacts = empty_contacts(len(joints.blocks), len(joints.kn), model.dimension, n_memory, len(joints.integrated) > 0)
     narrow.place(joints, geometry, contacts, bodies)
     contacts.stale[-1] = 0  # faces that are the wrong ones already need not ask: the right ones are in the list
     return JointArrays(joints, geometry, contacts)

@@ -34,6 +34,9 @@ def in_planes(joints: Joints, gaps: np.ndarray, positions: np.ndarray) -> FixedJ
         kn=joints.kn,
         ks=joints.ks,
         law=joints.law,
+        integrated=joints.integrated,
+        after=joints.after,
+        fans=joints.fans,
         torsion=joints.torsion,
     )
 

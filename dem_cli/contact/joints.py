@@ -10,7 +10,7 @@ import numpy as np
 from dem_cli.contact.block_compliance import BlockCompliance
 from dem_cli.contact.layout import PointLayout
 from dem_cli.kernels.fixed_joints import NO_SHARES
-from dem_cli.kernels.records import Contacts, FixedJoints, Joints, MovingJoints
+from dem_cli.kernels.records import NOTHING, Contacts, FixedJoints, Joints, MovingJoints
 from dem_cli.model.copies import numbered_through, repeated
 from dem_cli.model.model import Model
 
@@ -85,6 +85,7 @@ class JointProperties(NamedTuple):
     rigid: np.ndarray  # whose stiffness is a means and no property: kn = "auto", no block deforms, (n_named,) bool
     pressed: PressedLaw = lambda parameters, overlaps, memory, kn: kn * np.maximum(overlaps, 0.0)
     bonded: bool = False  # whether points lose work across the joint too: it is counted from gap to gap
+    integrated: np.ndarray | None = None  # whose pressure is integrated where elastic, (n_named,) bool; None: of none
     compliance: BlockCompliance | None = None  # of the blocks, lumped into their joints; None: all blocks are rigid
     heads: np.ndarray | None = None  # named joint in the head joints of each, −1: nothing, (n_named,); None: its own
     rows: LawRows | None = None  # of joints whose stiffness or friction is not that of their name; None: as `law`
@@ -135,9 +136,16 @@ class JointProperties(NamedTuple):
         rigid = self.rigid[self.between(model, blocks)]
         return rigid if self.compliance is None else rigid & ~self.compliance.deforms[blocks].any(axis=1)
 
+    def integrated_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
+        """Whether the pressure on the joint of each pair of blocks (n, 2) is integrated over their faces, (n,) bool."""
+        if self.integrated is None:
+            return np.zeros(len(blocks), bool)
+        return self.integrated[self.between(model, blocks)] & ~self.rigid_between(model, blocks)
+
     def spread_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
         """Whether friction between each pair of blocks (n, 2) has the torsion of a spread pressure, (n,) bool."""
-        return self.spread[self.between(model, blocks)] & self.rigid_between(model, blocks)
+        acts = self.rigid_between(model, blocks) | self.integrated_between(model, blocks)
+        return self.spread[self.between(model, blocks)] & acts
 
     def stiffness_of(self, named: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """kn and ks of joints by name and faces [Pa/m], (n,) each, with what their blocks give way.
@@ -188,8 +196,8 @@ class JointArrays(NamedTuple):
     contacts: Contacts
 
 
-def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) -> Contacts:
-    """Contacts that carry nothing."""
+def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int, elastic: bool = False) -> Contacts:
+    """Contacts that carry nothing. elastic: there are faces over which pressure is integrated."""
     return Contacts(
         gaps=np.zeros(n_points),
         shear=np.zeros((n_points, dimension - 1)),
@@ -200,6 +208,7 @@ def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int) 
         stale=np.zeros(n_joints + 1, np.int8),
         exchanged=np.zeros(2),
         jolts=np.zeros(1),
+        lumped=np.zeros(n_points if elastic else 0),
     )
 
 
@@ -211,17 +220,23 @@ def joints_of(
     areas: np.ndarray,
     shares: np.ndarray,
     torsion: np.ndarray = NO_SHARES,
+    lone: np.ndarray | bool = False,
 ) -> MovingJoints:
     """Joints of pairs of faces with their stiffness and law; frames, levers and points are yet to be placed.
 
     starts: first point of each joint, (n_joints + 1,); areas: of the joints [m²], (n_joints,); shares: of it that
-    belong to each point, (n_points,); torsion: in space, as FixedJoints.torsion, (n_joints,).
+    belong to each point, (n_points,); torsion: in space, as FixedJoints.torsion, (n_joints,); lone: joints of an edge
+    or a corner, that have no face, (n_joints,) bool.
     """
     d, r, n_points = model.dimension, model.inertias.shape[1], int(starts[-1])
     blocks = model.part_blocks[faces.parts]
     named = properties.between(model, blocks)
     kn, ks = properties.stiffness_of(named, faces.faces)
     owners = np.repeat(np.arange(len(blocks)), np.diff(starts))
+    integrated = properties.integrated_between(model, blocks) & ~lone
+    elastic = {}
+    if integrated.any():
+        elastic = {"integrated": integrated.astype(np.int8), "after": np.arange(n_points), "fans": np.zeros(n_points)}
     return MovingJoints(
         blocks=blocks,
         starts=starts,
@@ -233,6 +248,7 @@ def joints_of(
         law=properties.law_of(named, kn, model, blocks),
         torsion=torsion,
         held=np.full(len(blocks), -1),
+        **elastic,
     )
 
 
@@ -249,7 +265,9 @@ def points_of(starts: np.ndarray, joints: np.ndarray) -> np.ndarray:
 
 
 def only_points(joints: Joints, kept: np.ndarray) -> Joints:
-    """The joints with some of their points only; kept: (n_points,) bool."""
+    """The joints with some of their points only, which carry what they do by themselves; kept: (n_points,) bool."""
     starts = np.concatenate([[0], np.cumsum(kept)])[joints.starts]
     own = ("places",) if isinstance(joints, FixedJoints) else ("frames", "levers", "points")
-    return joints._replace(starts=starts, **{name: getattr(joints, name)[kept] for name in (*own, "kn", "ks")})
+    return joints._replace(
+        starts=starts, **{name: getattr(joints, name)[kept] for name in (*own, "kn", "ks")}, integrated=NOTHING
+    )

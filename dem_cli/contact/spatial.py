@@ -18,6 +18,7 @@ from dem_cli.geometry.outlines import away_from, furthest
 from dem_cli.geometry.parts import shapes_of
 from dem_cli.geometry.rotation import matrices
 from dem_cli.geometry.solids import face_areas
+from dem_cli.kernels.deformation.pressed_faces import fan_out_all
 from dem_cli.kernels.records import (
     FACES,
     BlockShapes,
@@ -133,7 +134,7 @@ def points(
         found, shares = _with_rules(found, shares, np.where(lone, 0, properties.along_sides[named]))
     spread = properties.spread_between(model, model.part_blocks[faces.parts])
     torsion = np.where(spread, found.measures[:, TORSION], 1.0)
-    joints = joints_of(model, faces, properties, found.starts, areas, shares, torsion)
+    joints = joints_of(model, faces, properties, found.starts, areas, shares, torsion, lone)
     geometry = SpatialGeometry(
         keys=faces.faces,
         features=found.features,
@@ -214,6 +215,8 @@ def place(joints: Joints, geometry: SpatialGeometry, contacts: Contacts, bodies:
     owners = joints.owners
     frames = geometry.axes[owners]
     joints.frames[:], joints.points[:], contacts.gaps[:] = frames, geometry.places, geometry.gaps
+    if len(joints.integrated):
+        fan_out_all(joints)
     along = frames.reshape(-1, 3, 3)
     for side in (0, 1):
         arms = geometry.places - bodies.positions[joints.blocks[owners, side]]

@@ -27,7 +27,7 @@ from dem_cli.contact.spatial import (
     touching,
 )  # fmt: skip
 from dem_cli.errors import SolverError
-from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints, SpatialMotion
+from dem_cli.kernels.records import FACES, Bodies, Contacts, Joints, MovingJoints, SpatialMotion
 from dem_cli.kernels.renewal import LEFT, MOST_LEFT
 from dem_cli.kernels.spatial_forces import measure_spatial, renew_fresh
 from dem_cli.kernels.spatial_points import LOCAL, classify
@@ -64,7 +64,8 @@ def points(
     kinds, edges = np.zeros(n, np.int8), np.full((n, 5), -1)
     classify(solids, faces.parts, faces.faces, faces.separation, work, kinds, edges)
     n_points = int(starts[-1])
-    joints = joints_of(model, faces, properties, starts, np.zeros(n), np.zeros(n_points), np.ones(n))
+    none = np.zeros(n), np.zeros(n_points)
+    joints = joints_of(model, faces, properties, starts, *none, np.ones(n), kinds != FACES)
     normals = model.faces.normals[faces.faces]
     geometry = SpatialMotion(
         keys=faces.parts,

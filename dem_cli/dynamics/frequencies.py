@@ -26,6 +26,7 @@ from dem_cli.engine.dynamic_settings import FrequencySettings
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.errors import SolverError
 from dem_cli.geometry.rotation import matrices
+from dem_cli.kernels.records import INTEGRATED
 from dem_cli.links.matrices import elongations
 from dem_cli.links.matrices import geometric as geometric_of_links
 from dem_cli.model.mode_masses import mass_matrices
@@ -115,7 +116,7 @@ def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = 
     """
     contacts = sim.measured()  # and frames and levers of this instant
     model, joints = sim.model, sim.joints
-    found = springs_of(model, joints, closed, sim.settings.frequency, sim.bodies)
+    found = springs_of(model, joints, closed, sim.settings.frequency, sim.bodies, contacts.gaps)
     found = found._replace(rows=_with_links(found, sim, closed is not None))
     if not geometric:
         return found
@@ -158,27 +159,59 @@ def springs_of(
     closed: np.ndarray | None = None,
     settings: FrequencySettings = DEFAULT.frequency,
     bodies: Bodies | None = None,
+    gaps: np.ndarray | None = None,
 ) -> System:
     """Springs and masses of joints whose frames and levers are current; closed: as for `system`.
 
     bodies: where all blocks are, with the modes of those that deform; None: none has turned, and all are rigid.
+    gaps: of all points [m], by which elastic faces are closed in part; None: they are closed, or open, as a whole.
     """
-    from scipy.sparse import diags_array, vstack
+    from scipy.sparse import vstack
 
     d, strained = model.dimension, bodies if model.n_modes else None
     blocks = np.flatnonzero(~model.fixed)
     turning, axes = (part[blocks] for part in _uncoupled(model, bodies))
     masses = np.column_stack([np.repeat(model.masses[blocks, None], d, axis=1), turning])
-    springs = np.column_stack([joints.kn, *[joints.ks] * (d - 1)])
-    if closed is not None:
-        springs = springs * closed[:, None]
     per_mass = _per_mass(masses, axes)
-    rows = (diags_array(np.sqrt(springs.ravel())) @ compatibility(model, joints, strained) @ per_mass).tocsr()
+    rows = (_roots(joints, d, closed, gaps) @ compatibility(model, joints, strained) @ per_mass).tocsr()
     held = model.held_columns
     if strained is not None:
         rows, held = vstack([rows, _own_springs(model) @ per_mass]).tocsr(), held_motions(model, True)[blocks].ravel()
     rows.eliminate_zeros()
     return System(rows, None, masses, axes, blocks, held, settings)
+
+
+def _roots(joints: Joints, d: int, closed: np.ndarray | None, gaps: np.ndarray | None) -> csr_array:
+    """S with SᵀS = K, forces by motions of all points, their normals first, (n_points·d, n_points·d)."""
+    from scipy.sparse import csr_array, diags_array
+
+    springs = np.column_stack([joints.kn, *[joints.ks] * (d - 1)])
+    if closed is not None:
+        springs = springs * closed[:, None]
+    if not len(joints.integrated):
+        return diags_array(np.sqrt(springs.ravel())).tocsr()
+    from dem_cli.contact.pressed_stiffness import root_of_stiffness
+
+    root = root_of_stiffness(joints, _overlaps(joints, closed, gaps)).tocoo()
+    springs[:, 0] = 0.0
+    normals = csr_array((root.data, (d * root.row, d * root.col)), shape=(springs.size, springs.size))
+    return normals + diags_array(np.sqrt(springs.ravel())).tocsr()
+
+
+def _overlaps(joints: Joints, closed: np.ndarray | None, gaps: np.ndarray | None) -> np.ndarray:
+    """Overlaps of all points [m], negative: open, (n_points,); 0 of faces that are closed as a whole, or just touch."""
+    owners, n = joints.owners, len(joints.blocks)
+    if closed is None:
+        return np.zeros(len(owners))
+    found = np.where(closed, 0.0, -1.0)
+    acts = np.bincount(owners, closed, n) > 0.0
+    whole = (joints.integrated == INTEGRATED)[owners]
+    found[whole] = np.where(acts[owners], 0.0, -1.0)[whole]
+    if gaps is not None:
+        presses = np.bincount(owners, gaps <= 0.0, n) > 0.0
+        bent = whole & (acts & presses)[owners]
+        found[bent] = -gaps[bent]
+    return found
 
 
 def _uncoupled(model: Model, bodies: Bodies | None) -> tuple[np.ndarray, np.ndarray]:

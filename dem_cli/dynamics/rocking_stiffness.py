@@ -26,7 +26,7 @@ from dem_cli.dynamics.frequencies import System, highest_of, springs_of
 from dem_cli.engine.properties import joint_properties
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.viscous import element_numbers
-from dem_cli.kernels.records import Joints
+from dem_cli.kernels.records import NOTHING, Joints
 from dem_cli.model.model import Model
 from dem_cli.model.scales import mean_weight, origin_of, own_weights, smallest_edge
 
@@ -122,6 +122,7 @@ def _joints(case: Case, model: Model, ratio: float) -> tuple[Joints, np.ndarray]
     properties = joint_properties(case, model, ratio)
     rest = bodies_at_rest(model, origin_of(model))
     joints = joints_of_start(model, rest, properties, smallest_edge(model)).joints
+    joints = joints._replace(integrated=NOTHING)  # those are not "auto", and count as next to rigid
     return joints, properties.rigid_between(model, joints.blocks)[joints.owners]
 
 

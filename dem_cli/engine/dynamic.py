@@ -255,7 +255,7 @@ class DynamicSimulation(Simulation):
     def _compiled_shake(self) -> CompiledKernel:
         return compiled_shake(
             self.law, self.properties.profiled, self.damping.in_joints, self.model.dimension, self.kinds_of_links,
-            self.model.n_modes > 0, len(self.model.mode_shapes) > 0,
+            self.order_within_blocks, self.integrates,
         )  # fmt: skip
 
     # -- energy ------------------------------------------------------------------------------------

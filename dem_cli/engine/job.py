@@ -84,12 +84,16 @@ class Job:
         return softer
 
     def _compiled(self, kinematics: str, ratio: float) -> Simulation:
+        analysis = self.case.analysis
+        # The failure load of the geometry of the start is that of rigid blocks, and faces close for ever before it.
+        searches = analysis.kind == "pushover" and getattr(analysis, "control", "load") == "load"
+        integrates = kinematics != "fixed" or not searches
         tilting = getattr(self.case.analysis, "pattern", None) == "tilt"
         return self.clock.compiled(
             lambda: Simulation(
                 self.model,
                 law_of(self.case),
-                joint_properties(self.case, self.model, ratio),
+                joint_properties(self.case, self.model, ratio, integrates=integrates),
                 kinematics,
                 live_scale=1.0 if tilting else live_scale(self.model),
                 tilting=tilting,

@@ -18,8 +18,14 @@ from dem_cli.output.resume.likeness import alike
 
 Simulation = Any  # that of simulation.py, which imports this file
 _ROWS: dict[str, dict[str, str]] = {  # fields of records by how many rows they have; of those with "?" maybe none
-    "MovingJoints": {"joints": "blocks law", "points": "frames levers points kn ks", "joints?": "held torsion"},
-    "FixedJoints": {"joints": "blocks law axes anchors arms", "points": "places kn ks", "joints?": "torsion"},
+    "MovingJoints": {
+        "joints": "blocks law", "points": "frames levers points kn ks", "joints?": "held torsion integrated",
+        "points?": "after fans",
+    },
+    "FixedJoints": {
+        "joints": "blocks law axes anchors arms", "points": "places kn ks", "joints?": "torsion integrated",
+        "points?": "after fans",
+    },
     "PlanarGeometry": {"joints": "keys edges scales", "points": "features", "points?": "profile", "joints?": "sunk"},
     "SpatialGeometry": {
         "joints": "keys kinds corners areas", "points": "features", "joints?": "axes", "points?": "places gaps",
@@ -29,15 +35,15 @@ _ROWS: dict[str, dict[str, str]] = {  # fields of records by how many rows they 
         "points": "features opened types corners shares spans arms", "ends": "cap_starts", "caps": "cap_arms cap_areas",
         "room": "found labels numbers taken heirs",
     },
-    "Contacts": {"points": "gaps shear normal slip memory closure", "ends": "stale"},
+    "Contacts": {"points": "gaps shear normal slip memory closure", "ends": "stale", "points?": "lumped"},
     "Dampers": {
         "joints": "viscosity lasts rooms awake met", "ends": "packed active",
         "points?": "rates gains holders slips states motions lifts",
     },
 }  # fmt: skip
 _NUMBERS: dict[str, dict[str, str]] = {  # fields by what their numbers are of; with "!" the number of all is one, too
-    "MovingJoints": {"blocks": "blocks"},
-    "FixedJoints": {"blocks": "blocks"},
+    "MovingJoints": {"blocks": "blocks", "points": "after"},
+    "FixedJoints": {"blocks": "blocks", "points": "after"},
     "PlanarGeometry": {"faces": "keys", "corners": "edges"},
     "SpatialGeometry": {"faces": "keys", "kinds": "kinds", "points!": "corners"},
     "SpatialMotion": {
@@ -136,7 +142,7 @@ def _check_tiles(sim: Simulation, joints: FixedJoints) -> None:
     _require(0 < threads <= _MOST_THREADS, "tiles")
     made = NO_TILES
     if sim.tiled:
-        made = tiled(joints.blocks, joints.starts, model.n_blocks, model.dimension, sim.law.n_of_lanes, threads)
+        made = tiled(joints.blocks, joints.starts, model.n_blocks, model.dimension, sim.n_in_lanes, threads)
     layout = made._fields.index("ends")  # behind it is room, of which nothing is read before it is written
     _same(made[:layout], tiles[:layout])
     for name, room in made._asdict().items():

@@ -29,6 +29,8 @@ from dem_cli.laws.law import Law
 from dem_cli.links.link import all_forces
 from dem_cli.links.registry import LINKS
 
+RIGID, LINEAR, QUADRATIC = 0, 1, 2  # polynomials that displacements within a block are
+
 
 class Drifts(NamedTuple):
     """Kernels that move blocks, with their corners."""
@@ -61,34 +63,40 @@ def compiled_advance(
     profiled: bool = False,
     dimension: int = 2,
     links: tuple[str, ...] = (),
-    strains: bool = False,
-    bends: bool = False,
+    order: int = RIGID,
     tiled: bool = False,
+    elastic: bool = False,
 ):
     """The stepping loop for one kinematics, one law, one kind of joints and some of links; compiled at its first call.
 
-    links: kinds of links that the scene has (links/registry.py); strains: blocks deform, which no link knows; bends: in
-    quadratic modes as well; tiled: joints are in tiles (`FixedJoints.tiles`), which geometry of the start asks for.
+    links: kinds of links that the scene has (links/registry.py); order: of the displacements within blocks, RIGID,
+    LINEAR or QUADRATIC, which no link knows; tiled: joints are in tiles (`FixedJoints.tiles`), which geometry of the
+    start asks for; elastic: there are faces over which pressure is integrated (kernels/deformation/pressed_faces.py).
     """
     if tiled and law.of_lanes is not None:
-        return make_tiled_advance(make_tiled_forces(law.of_lanes, law.n_of_lanes), _pull(links, False))
-    if strains:
-        return _strained_advance(kinematics, law, profiled, dimension, bends)
+        return make_tiled_advance(
+            make_tiled_forces(law.of_lanes, law.n_of_lanes + elastic, elastic), _pull(links, False)
+        )
+    if order > RIGID:
+        return _strained_advance(kinematics, law, profiled, dimension, order == QUADRATIC, elastic)
     if kinematics == "fixed":
-        return make_advance(make_contact_forces(law.function, law.bonded), drift_centroids, _pull(links, False))
-    forces = FORCES[dimension](law, profiled, rigid=True)
+        forces = make_contact_forces(law.function, law.bonded, elastic=elastic)
+        return make_advance(forces, drift_centroids, _pull(links, False))
+    forces = FORCES[dimension](law, profiled, rigid=True, elastic=elastic)
     return make_advance(forces, DRIFTS[dimension].in_pseudo_time, _pull(links, True))
 
 
-def _strained_advance(kinematics: str, law: Law, profiled: bool, dimension: int, bends: bool):
+def _strained_advance(kinematics: str, law: Law, profiled: bool, dimension: int, bends: bool, elastic: bool):
     if kinematics == "fixed":
-        forces = make_contact_forces(law.function, law.bonded, True, bends)
+        forces = make_contact_forces(law.function, law.bonded, True, bends, elastic)
         return make_advance(forces, drift_strained_centroids, strains=True, bends=bends)
+    flags = {"rigid": True, "strains": True, "elastic": elastic}
     if bends:  # tables ask for joints of more than two points, in the plane
-        forces = make_profiled_forces(law.function, law.bonded, rigid=True, strains=True, bends=True)
+        forces = make_profiled_forces(law.function, law.bonded, bends=True, **flags)
         return make_advance(forces, drift_bent_corners, strains=True, moves=True, bends=True)
-    forces, drift = FORCES[dimension](law, profiled, rigid=True, strains=True), DRIFTS[dimension].strained
-    return make_advance(forces, drift, strains=True, moves=True)
+    return make_advance(
+        FORCES[dimension](law, profiled, **flags), DRIFTS[dimension].strained, strains=True, moves=True
+    )  # fmt: skip
 
 
 @cache
@@ -98,17 +106,18 @@ def compiled_shake(
     damped: bool,
     dimension: int = 2,
     links: tuple[str, ...] = (),
-    strains: bool = False,
-    bends: bool = False,
+    order: int = RIGID,
+    elastic: bool = False,
 ):
     """The stepping loop of time histories, as compiled_advance; compiled at its first call."""
-    if bends:
-        forces = make_profiled_forces(law.function, law.bonded, keeps=damped, meets=True, strains=True, bends=True)
+    flags = {"keeps": damped, "meets": True, "elastic": elastic}
+    if order == QUADRATIC:
+        forces = make_profiled_forces(law.function, law.bonded, strains=True, bends=True, **flags)
         return make_shake(forces, drift_bent_corners, damped, strains=True, bends=True)
-    if strains:
-        forces = FORCES[dimension](law, profiled, keeps=damped, meets=True, strains=True)
+    if order == LINEAR:
+        forces = FORCES[dimension](law, profiled, strains=True, **flags)
         return make_shake(forces, DRIFTS[dimension].strained_in_time, damped, strains=True)
-    forces = FORCES[dimension](law, profiled, keeps=damped, meets=True)
+    forces = FORCES[dimension](law, profiled, **flags)
     return make_shake(forces, DRIFTS[dimension].in_time, damped, _pull(links, True))
 
 

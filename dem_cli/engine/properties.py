@@ -18,7 +18,7 @@ from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
 from dem_cli.laws.mixed import mixed, row
 from dem_cli.laws.registry import LAWS
-from dem_cli.laws.stiffness import StiffJoint
+from dem_cli.laws.stiffness import INTEGRATED, StiffJoint
 from dem_cli.laws.strength import reduced
 from dem_cli.model.model import Model
 from dem_cli.model.scales import stiffness_scale
@@ -43,6 +43,7 @@ def joint_properties(
     ratio: float = DEFAULT.stiffness.statics,
     step: float = math.inf,
     lands: bool | None = None,
+    integrates: bool = True,
 ) -> JointProperties:
     """Stiffness and law parameters of each named joint; "auto" means kn·h/W = ratio, and ks = kn.
 
@@ -50,6 +51,7 @@ def joint_properties(
 
     step: time step [s] that velocities in a law refer to; infinite where time has no meaning: all motion is slow.
     lands: whether blocks land on each other, so that joints keep the points at their ends; None: in time histories.
+    integrates: whether the pressure on elastic joints is integrated over their faces, else it is sampled at points.
     """
     names, by_material = joint_table(case)
     heads = joints_in_heads(case)
@@ -72,15 +74,22 @@ def joint_properties(
     deforming = _with_deforming_blocks(model, lying, compliance, np.flatnonzero(bending))
     bent = set(lying[:, np.flatnonzero(bending)].ravel().tolist())  # two points cannot tell how a block bends
     lands = hasattr(case.analysis, "margin") if lands is None else lands
-    layouts = tuple(_layout(table, case, k in deforming, lands and k not in bent) for k, table in enumerate(tables))
+    integrated = np.array(
+        [integrates and table.points == INTEGRATED and k not in bent for k, table in enumerate(tables)]
+    )
+    layouts = tuple(
+        None if integrated[k] and (k in deforming or table.kn != "auto")
+        else _layout(table, case, k in deforming, lands and k not in bent)
+        for k, table in enumerate(tables)
+    )  # fmt: skip
     spread = [layout is None and _spreads(table) for layout, table in zip(layouts, tables, strict=True)]
     rigid = free[:, 0] & _with_rigid_blocks(names, model, lying, compliance)
     own_rows = _own_rows(tables, laws, columns, _OfEachJoint(names, step, compliance is not None, case.seed))
     law = mixed(tuple(laws))
     spreads = np.array(spread) & (model.n_modes == 0)
     return JointProperties(
-        names, by_material, kn, ks, columns, intact, layouts, spreads, rigid, law.pressed, law.bonded, compliance,
-        heads, own_rows,
+        names, by_material, kn, ks, columns, intact, layouts, spreads, rigid, law.pressed, law.bonded, integrated,
+        compliance, heads, own_rows,
     )  # fmt: skip
 
 
@@ -89,8 +98,8 @@ def _law(table: StiffJoint) -> Law:
 
 
 def _spreads(table: StiffJoint) -> bool:
-    """Whether friction may act as that of a spread pressure: nobody asked for points, and nothing bonds them."""
-    return table.points is None and table.profile is None and not _law(table).bonded
+    """Whether pressure and friction may act over the face: nobody asked for points, and nothing bonds them."""
+    return not table.asks_for_points and not _law(table).bonded
 
 
 def _layout(table: StiffJoint, case: Case, deforms: bool, lands: bool) -> PointLayout | None:

@@ -14,7 +14,7 @@ from dem_cli.contact.start import bodies_at_rest
 from dem_cli.engine.fictitious_masses import fictitious_masses
 from dem_cli.engine.kept_scene import guard_of
 from dem_cli.engine.loads import ActingForces, loads_of
-from dem_cli.engine.loops import compiled_advance
+from dem_cli.engine.loops import LINEAR, QUADRATIC, RIGID, compiled_advance
 from dem_cli.engine.placement.clearances import play_of_start
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
@@ -25,7 +25,7 @@ from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.fixed_joints import FixedJoints
 from dem_cli.kernels.jit import CompiledKernel, threads_may_share
-from dem_cli.kernels.records import Bodies, Contacts, Joints
+from dem_cli.kernels.records import INTEGRATED, Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.links.link import Springs
 from dem_cli.links.matrices import elastic_energy_of_links, joined
@@ -159,7 +159,7 @@ class Simulation:
         detection = self.settings.detection
         self.tiled = self._in_tiles()
         if self.tiled:
-            self.tracking.tile(self.law.n_of_lanes, self.threads)
+            self.tracking.tile(self.n_in_lanes, self.threads)
         self.longest = max(detection.shortest_call, detection.longest_call // max(1, len(self.joints.kn)))
         self.bodies.travel[:] = 0.0
         self._masses.clear()
@@ -168,6 +168,8 @@ class Simulation:
     def _in_tiles(self) -> bool:
         """Whether joints are worked on many at once; few are not worth another kernel."""
         if self.kinematics != "fixed" or self.model.n_modes or self.law.of_lanes is None:
+            return False
+        if self.integrates and self.model.dimension > 2:  # outlines have no form for lanes
             return False
         return len(self.joints.kn) >= self.settings.detection.tiled_from
 
@@ -266,7 +268,7 @@ class Simulation:
     def _step(self, n_steps: int, mode: int) -> int:
         """A call of the compiled loop: how many steps it did before joints had to be looked for."""
         threads = self.threads if n_steps > 0 and threads_may_share() else 1
-        members = self.tracking.assemble(self.law.n_of_lanes, threads) if self.tiled else 1
+        members = self.tracking.assemble(self.n_in_lanes, threads) if self.tiled else 1
         scene = (
             self.bodies, self.shape, self.joints, self.geometry, self.contacts, self.links, self.loads, self.control,
             self.ledger, self.like, self.like_rotation,
@@ -282,8 +284,23 @@ class Simulation:
         model = self.model
         return compiled_advance(
             self.kinematics, self.law, self.properties.profiled, model.dimension, self.kinds_of_links,
-            model.n_modes > 0, len(model.mode_shapes) > 0, self.tiled,
+            self.order_within_blocks, self.tiled, self.integrates,
         )  # fmt: skip
+
+    @property
+    def order_within_blocks(self) -> int:
+        """Order of the polynomials that displacements within blocks are, as engine/loops.py has them."""
+        return QUADRATIC if len(self.model.mode_shapes) else LINEAR if self.model.n_modes else RIGID
+
+    @property
+    def n_in_lanes(self) -> int:
+        """Numbers that tiles keep of each joint: those that the law reads there, and whether its face is elastic."""
+        return self.law.n_of_lanes + self.integrates
+
+    @property
+    def integrates(self) -> bool:
+        """Whether there are faces over which pressure is integrated."""
+        return len(self.contacts.lumped) > 0
 
     @property
     def speeds(self) -> np.ndarray:
@@ -434,10 +451,16 @@ class Simulation:
     def elastic_energy(self) -> float:
         """In the springs of the joints and of links, and in blocks that deform [J]."""
         contacts, (kn, ks) = self.contacts, self._stiffness()
-        normal = (contacts.normal**2 / kn).sum()
+        normal = (contacts.normal**2 / kn).sum() if not self.integrates else self._pressed_energy(kn)
         shear = ((contacts.shear**2).sum(axis=1) / ks).sum()
         inside = (self.shape.mode_stiffness * self.bodies.modes**2).sum() if self.model.n_modes else 0.0
         return 0.5 * float(normal + shear + inside) + elastic_energy_of_links(self.links)
+
+    def _pressed_energy(self, kn: np.ndarray) -> float:
+        """Twice that along normals where some pressure is integrated (kernels/deformation/pressed_faces.py) [J]."""
+        contacts, joints = self.contacts, self.joints
+        whole = joints.integrated[joints.owners] == INTEGRATED
+        return float(np.where(whole, -contacts.normal * contacts.gaps, contacts.normal**2 / kn).sum())
 
     def _stiffness(self) -> tuple[np.ndarray, np.ndarray]:
         """Of all contact points along normal and tangents, 1 where there is none; that of fixed joints is kept."""

@@ -17,6 +17,7 @@ class ProofSettings:
     steady: float = 1.55  # growth while time doubles that counts as steady motion
     far: float = 30.0  # in elastic displacements; walls of few courses still find equilibrium after 20
     far_per_depth: float = 0.125  # times the square of the courses: walls of 22 find it after 40, of 70 after 300
+    closing: float = 1e4  # of integrated faces: one that is pressed over c turns by 2 N/(kn c²)
     beyond: float = 2.0  # times as far as a path reached its equilibrium at the same load, ...
     unexpected: float = 150.0  # ... elastic displacements, where a path carries more, does not say, or there is none
     in_place: float = 0.03  # of the width of a block, that such a way is at most where geometry moves, and mechanisms

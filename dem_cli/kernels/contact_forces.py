@@ -15,9 +15,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import make_press, push_apart
+from dem_cli.kernels.contact_point import make_press, push_apart, swing
 from dem_cli.kernels.deformation.joint_spread import add_leverage, add_spread_dyads, no_leverage, spread_at, spread_of
 from dem_cli.kernels.deformation.matrices import load_matrix, times
+from dem_cli.kernels.deformation.pressed_faces import share_pressure
 from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import inline, named
@@ -34,6 +35,7 @@ from dem_cli.kernels.joint_plane import (
     torsion_of,
     torsion_share,
 )
+from dem_cli.kernels.records import INTEGRATED
 from dem_cli.kernels.vec import axpy, components, compose, load, load_frame, scale
 
 
@@ -48,10 +50,13 @@ def pressed_at(places, normals, first, last, like, like_rotation):
     return centre_of(push, twist)
 
 
-def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = False, bends: bool = False) -> Callable:
+def make_contact_forces(
+    law: Callable, bonded: bool = False, strains: bool = False, bends: bool = False, elastic: bool = False
+) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
-    strains: blocks deform (kernels/deformation); bends: in quadratic modes as well, 2D.
+    strains: blocks deform (kernels/deformation); bends: in quadratic modes as well, 2D;
+    elastic: there are faces over which pressure is integrated (kernels/deformation/pressed_faces.py).
     """
     press = make_press(law, bonded)
 
@@ -82,6 +87,18 @@ def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = Fal
                 sums = (nothing, nothing, nothing)
             opens, slides = components(frame, scale(dt, moved))
             spin = seen_from(frame, scale(dt, axpy(-1.0, spin_a, spin_b)))
+            if elastic:
+                for p in range(starts[joint], starts[number + 1]):
+                    point = np.uint64(p)
+                    place = load(places, point, 0, like[1:])
+                    opened = opens + opening_at(spin, place)
+                    if strains:
+                        opened += spread_at(spread, place)[0]
+                    if bends:
+                        opened += dt * apart_at(line, place[0], frame)[0]
+                    gaps[point] += opened
+                share_pressure(joints, contacts, number)
+            whole = elastic and joints.integrated[joint] == INTEGRATED
             share = torsion_share(joints.torsion, joint, like)
             centre = scale(0.0, like[1:])
             if share != 1.0:
@@ -98,8 +115,11 @@ def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = Fal
                 if bends:
                     bent_open, bent_along = apart_at(line, place[0], frame)
                     opened += dt * bent_open
-                gap = gaps[point] + opened
-                gaps[point] = gap
+                if elastic:
+                    gap = contacts.lumped[point]
+                else:
+                    gap = gaps[point] + opened
+                    gaps[point] = gap
                 if not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
                 slide = sliding_at(slides, spin, place)
@@ -107,7 +127,10 @@ def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = Fal
                     slide = axpy(1.0, spread_along, slide)
                 if bends:
                     slide = (slide[0] + dt * bent_along,)
+                pressed = contacts.normal[point]
                 normal, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
+                if whole:
+                    contacts.jolts[0] += swing(gaps[point] - opened, gaps[point], pressed, normal)
                 lost += work
                 push += normal
                 rub = axpy(1.0, shear, rub)
@@ -128,4 +151,4 @@ def make_contact_forces(law: Callable, bonded: bool = False, strains: bool = Fal
         return lost
 
     return named(contact_forces, law, "bonded" if bonded else "", "strains" if strains else "",
-                 *["bends"] * bends)  # fmt: skip
+                 *["bends"] * bends, *["elastic"] * elastic)  # fmt: skip

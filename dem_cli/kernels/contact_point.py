@@ -36,6 +36,16 @@ def jolt(gap, opened, before, after):
 
 
 @always_inline
+def swing(before, gap, pressed, normal):
+    """Work that a step takes of a point of an elastic face beyond what its pressure stores [J]: see `jolt`.
+
+    before, gap: its gaps before and after the step [m]; pressed, normal: its forces [N]. Work is the mean of both
+    forces × the way between; summed over the face ½ Σ F (−g) is stored (kernels/deformation/pressed_faces.py).
+    """
+    return 0.5 * (normal * before - pressed * gap)
+
+
+@always_inline
 def plastic_slide(old, shear, slide, ks):
     """What of a slide the shear spring did not take up: slide + Δs/ks [m]."""
     return axpy(1.0 / ks, axpy(-1.0, old, shear), slide)

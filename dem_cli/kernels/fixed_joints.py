@@ -12,6 +12,7 @@ import numpy as np
 
 from dem_cli.kernels.tiles.joint_tiles import NO_TILES, JointTiles
 
+NOTHING, NO_JOINTS = np.zeros(0, np.int8), np.zeros(0, np.int64)
 NO_SHARES = np.zeros(0)
 
 
@@ -30,6 +31,9 @@ class FixedJoints(NamedTuple):
     torsion: np.ndarray = NO_SHARES  # in space: how far from the centre of pressure friction acts, over the distance of
     # its point (contact/corner_forces.py), 1: at the point itself, (n_joints,)
     tiles: JointTiles = NO_TILES  # of these joints, for laws that have a form for lanes
+    integrated: np.ndarray = NOTHING  # this and the next two as MovingJoints has them
+    after: np.ndarray = NO_JOINTS
+    fans: np.ndarray = NO_SHARES
 
     @property
     def owners(self) -> np.ndarray:

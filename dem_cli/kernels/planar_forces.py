@@ -10,12 +10,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart
+from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart, swing
 from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
+from dem_cli.kernels.deformation.pressed_faces import line_gaps
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.planar_geometry import apart, overlap_of, place_end, refresh_lengths
+from dem_cli.kernels.records import INTEGRATED
 from dem_cli.kernels.vec import axpy, compose, load, scale, sliding
 
 
@@ -26,13 +28,15 @@ def make_planar_forces(
     meets: bool = False,
     rigid: bool = False,
     strains: bool = False,
+    elastic: bool = False,
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers.
     meets: points close and open without a loss of energy (`meeting`), in time histories.
     rigid: closure that was taken back (engine/rigid_joints.py) presses without an overlap, jolts are booked: statics.
-    strains: blocks deform (kernels/deformation); their edges stay straight.
+    strains: blocks deform (kernels/deformation); their edges stay straight. elastic: there are joints over which
+    pressure is integrated (kernels/deformation/pressed_faces.py).
     """
     press, books = make_press(law, bonded), rigid and not bonded
 
@@ -66,12 +70,16 @@ def make_planar_forces(
                 gap_low = max(gap_low, 0.0)
                 gap_high = max(gap_high, 0.0)
             true_low, true_high = gap_low, gap_high
+            was_low, was_high = gaps[first], gaps[second]
             opened_low, opened_high = gap_low - gaps[first], gap_high - gaps[second]
             gaps[first] = gap_low
             gaps[second] = gap_high
-            if meets and not bonded:
+            whole = elastic and joints.integrated[joint] == INTEGRATED
+            if whole:
+                gap_low, gap_high = line_gaps(gap_low, gap_high)
+            elif meets and not bonded:
                 gap_low, gap_high = meeting(gap_low, opened_low), meeting(gap_high, opened_high)
-            if rigid and not wrong:
+            if rigid and not wrong and not whole:
                 gap_low, gap_high = gap_low - closures[first], gap_high - closures[second]
             on_low = bonded or gap_low < 0.0 or normals[first] != 0.0
             on_high = bonded or gap_high < 0.0 or normals[second] != 0.0
@@ -97,7 +105,9 @@ def make_planar_forces(
                     slide = axpy(dt, spread_between(frame, gradient_a, gradient_b, arm_a, arm_b), slide)
                 pressed = normals[first]
                 normal, shear, work = press(gap_low, opened_low, slide, joints, contacts, joint, first)
-                if books and not wrong:
+                if books and whole:
+                    jolts += swing(was_low, gaps[first], pressed, normal)
+                elif books and not wrong:
                     jolts += jolt(gap_low, opened_low, pressed, normal)
                 friction_work += work
                 force, torque_a, torque_b = add_force(
@@ -117,7 +127,9 @@ def make_planar_forces(
                     slide = axpy(dt, spread_between(frame, gradient_a, gradient_b, arm_a, arm_b), slide)
                 pressed = normals[second]
                 normal, shear, work = press(gap_high, opened_high, slide, joints, contacts, joint, second)
-                if books and not wrong:
+                if books and whole:
+                    jolts += swing(was_high, gaps[second], pressed, normal)
+                elif books and not wrong:
                     jolts += jolt(gap_high, opened_high, pressed, normal)
                 friction_work += work
                 force, torque_a, torque_b = add_force(
@@ -131,4 +143,5 @@ def make_planar_forces(
         return friction_work
 
     flags = {"bonded": bonded, "keeps": keeps, "meets": meets, "rigid": rigid, "strains": strains}
+    flags |= {"elastic": elastic}
     return named(planar_forces, law, *(name if on else "" for name, on in flags.items()))

@@ -14,13 +14,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart
+from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart, swing
 from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
+from dem_cli.kernels.deformation.pressed_faces import line_gaps
 from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.planar_geometry import apart, place_end, refresh_lengths, share_of
+from dem_cli.kernels.records import INTEGRATED
 from dem_cli.kernels.vec import axpy, compose, load, scale, sliding
 
 
@@ -66,12 +68,14 @@ def make_profiled_forces(
     rigid: bool = False,
     strains: bool = False,
     bends: bool = False,
+    elastic: bool = False,
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers. places: instead of forces, the
     loop keeps gaps, frames, levers and points up to date, for detection and records. rigid, strains: as in
     planar_forces.py. bends: blocks have quadratic modes as well (kernels/deformation/quadratic.py).
+    elastic: as in planar_forces.py.
     """
     press, books = make_press(law, bonded), rigid and not bonded
 
@@ -152,6 +156,10 @@ def make_profiled_forces(
                 bending = line_apart(bodies.bending, bodies.turns, a, b, end_a, end_b, tb)
                 nothing = scale(0.0, like)
                 sums = (nothing, nothing, nothing)
+            whole = elastic and not wrong and joints.integrated[joint] == INTEGRATED
+            end_low, end_high = gap_low, gap_high
+            if whole:
+                end_low, end_high = line_gaps(gap_low, gap_high)
             loaded = False
             for p in range(first, last + 1):
                 point = np.uint64(p)
@@ -180,7 +188,9 @@ def make_profiled_forces(
                 before = gaps[point]
                 gaps[point] = gap
                 opened = gap - before
-                if meets and not bonded:
+                if whole:
+                    gap, faces = end_low if p == first else end_high, False
+                elif meets and not bonded:
                     gap = meeting(gap, opened)
                 if rigid and faces:
                     gap -= closures[point]
@@ -203,7 +213,9 @@ def make_profiled_forces(
                     slide = (slide[0] + dt * apart_at(bending, way, frame)[1],)
                 pressed = normals[point]
                 normal, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
-                if books and faces:
+                if books and whole:
+                    jolts += swing(before, gaps[point], pressed, normal)
+                elif books and faces:
                     jolts += jolt(gap, opened, pressed, normal)
                 lost += work
                 force, torque_a, torque_b = add_force(
@@ -222,7 +234,7 @@ def make_profiled_forces(
         return lost
 
     flags = {"bonded": bonded, "keeps": keeps, "places": places, "meets": meets, "rigid": rigid, "strains": strains}
-    flags |= {"bends": bends}
+    flags |= {"bends": bends, "elastic": elastic}
     return named(profiled_forces, law, *(name if on else "" for name, on in flags.items()))
 
 

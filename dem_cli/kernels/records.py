@@ -10,10 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.kernels.fixed_joints import NO_SHARES, FixedJoints
+from dem_cli.kernels.fixed_joints import NO_JOINTS, NO_SHARES, NOTHING, FixedJoints
 
 NO_MODES = np.zeros((0, 0))
-NOTHING, NO_JOINTS = np.zeros(0, np.int8), np.zeros(0, np.int64)
 
 
 class Bodies(NamedTuple):
@@ -75,6 +74,10 @@ class MovingJoints(NamedTuple):
     law: np.ndarray  # parameters of the joint law, (n_joints, n_parameters)
     torsion: np.ndarray = NO_SHARES  # in space: as FixedJoints.torsion, (n_joints,)
     held: np.ndarray = NO_JOINTS  # in space: points that touch, n; −1 − n where geometry was just measured, (n_joints,)
+    # Of elastic faces (kernels/deformation/pressed_faces.py), else empty:
+    integrated: np.ndarray = NOTHING  # 1: pressure is integrated over the face, (n_joints,) int8
+    after: np.ndarray = NO_JOINTS  # in space: the point that follows along the outline, (n_points,)
+    fans: np.ndarray = NO_SHARES  # and the share of the area between both and their mean, (n_points,)
 
     @property
     def owners(self) -> np.ndarray:
@@ -82,8 +85,9 @@ class MovingJoints(NamedTuple):
         return np.repeat(np.arange(len(self.blocks)), np.diff(self.starts))
 
     def kept(self) -> MovingJoints:
-        """The same with a copy of what changes as blocks move in space: stiffness of points, torsion of joints."""
-        return self._replace(kn=self.kn.copy(), ks=self.ks.copy(), torsion=self.torsion.copy())
+        """The same with a copy of what changes as blocks move in space: stiffness of points, torsion, outlines."""
+        names = ("kn", "ks", "torsion", "after", "fans")
+        return self._replace(**{name: getattr(self, name).copy() for name in names})
 
 
 # What both have in common: blocks, starts, owners, frames, levers, points, kn, ks, law.
@@ -232,6 +236,10 @@ class Contacts(NamedTuple):
         np.ndarray
     )  # elastic energy that went with areas that changed [J]: net (negative: made), sum of amounts, (2,)
     jolts: np.ndarray  # work of the present call by `contact_point.jolt` [J], (1,)
+    lumped: np.ndarray = (
+        NO_SHARES  # gaps at which the points of elastic faces carry what they do [m], (n_points,); empty:
+    )
+    # there are none (kernels/deformation/pressed_faces.py)
 
 
 class Loads(NamedTuple):
@@ -309,6 +317,8 @@ class Watch(NamedTuple):
     samples: np.ndarray  # out: of the steps 0, every, 2 every ... of a stretch, (n_samples, n_watched, 3, n_dof)
     links: np.ndarray = NO_LINKS  # out: state of all links at these steps (links/link.py), (n_samples, n_links, 3)
 
+
+NOT_INTEGRATED, INTEGRATED = 0, 1  # of Joints.integrated
 
 # Slots of the vector `ledger`: sums over steps [J].
 EXTERNAL, CONTACT, DAMPING, FRICTION, SUPPORT, DASHPOT, MASS, MAXWELL = 0, 1, 2, 3, 4, 5, 6, 7

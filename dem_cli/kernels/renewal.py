@@ -10,10 +10,11 @@ import math
 
 import numpy as np
 
+from dem_cli.kernels.deformation.pressed_faces import fan_out, share_pressure
 from dem_cli.kernels.jit import always_inline, kernel
-from dem_cli.kernels.records import CROSSING, EDGES, FACES, FIXED_TO_B
+from dem_cli.kernels.records import CROSSING, EDGES, FACES, FIXED_TO_B, INTEGRATED
 from dem_cli.kernels.separation import minus3, row3
-from dem_cli.kernels.spatial_features import NONE, carried3, feature_of, frame_of, on_cap, turned_back3
+from dem_cli.kernels.spatial_features import NONE, carried3, feature_of, frame_of, on_cap, tangents3, turned_back3
 from dem_cli.kernels.spatial_points import KN, KS, MOVED, SIZE, SPREAD, in_faces, of_edges, on_rim, torsion_now
 from dem_cli.kernels.vec import axpy, dot
 
@@ -49,11 +50,13 @@ def is_due(geometry, bodies, joint, a):
 
 
 @always_inline
-def _energy(joints, contacts, point):
-    """In the springs of a point [J]."""
+def _energy(joints, contacts, point, whole):
+    """In the springs of a point [J]. whole: it has its share of a pressure that is integrated over the face."""
     if joints.kn[point] == 0.0:
         return 0.0
     normal, along = contacts.normal[point], contacts.shear[point, 0] ** 2 + contacts.shear[point, 1] ** 2
+    if whole:
+        return 0.5 * (along / joints.ks[point] - normal * contacts.gaps[point])
     return 0.5 * (normal * normal / joints.kn[point] + along / joints.ks[point])
 
 
@@ -184,6 +187,23 @@ def _settle(joints, contacts, geometry, bodies, joint, point, k, frame, remember
 
 
 @always_inline
+def _press_again(joints, contacts, geometry, bodies, joint, frame, along):
+    """Normal forces of all points of an elastic face by the pressure on the outline that it has now."""
+    a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
+    for point in range(joints.starts[joint], joints.starts[joint + 1]):
+        if joints.kn[point] > 0.0:
+            normal, _, place = feature_of(geometry, bodies, joint, point, a, b, frame)
+            t1, t2 = tangents3(normal, along)
+            for k in range(3):
+                joints.points[point, k] = place[k]
+                joints.frames[point, 3 + k], joints.frames[point, 6 + k] = t1[k], t2[k]
+    fan_out(joints, joint)
+    share_pressure(joints, contacts, joint)
+    for point in range(joints.starts[joint], joints.starts[joint + 1]):
+        contacts.normal[point] = joints.kn[point] * max(-contacts.lumped[point], 0.0)
+
+
+@always_inline
 def _found(geometry, bodies, joint, pair, frame, along, room):
     """The contact points that there are now: how many."""
     out = (geometry.work, geometry.found, geometry.labels, geometry.numbers)
@@ -207,8 +227,9 @@ def _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
     if geometry.scales[joint, SPREAD] > 0.0:
         joints.torsion[joint] = torsion_now(geometry, joint, count)
     before, after = 0.0, 0.0
+    whole = joints.integrated.shape[0] > 0 and joints.integrated[joint] == INTEGRATED
     for point in range(first, last):
-        before += _energy(joints, contacts, point)
+        before += _energy(joints, contacts, point, whole)
     _look_up(joints, geometry, bodies, joint, count, b)
     for k in range(count):
         if geometry.taken[k] == NONE:
@@ -229,8 +250,10 @@ def _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
             while geometry.features[free] != NONE:
                 free += 1
             _settle(joints, contacts, geometry, bodies, joint, free, k, frame, remembers, bonded, fresh)
+    if whole and not fresh:
+        _press_again(joints, contacts, geometry, bodies, joint, frame, along)
     for point in range(first, last):
-        after += _energy(joints, contacts, point)
+        after += _energy(joints, contacts, point, whole)
     if not fresh:
         contacts.exchanged[0] += before - after
         contacts.exchanged[1] += abs(before - after)

@@ -12,12 +12,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.kernels.contact_point import jolt, make_press, meeting, push_apart
+from dem_cli.kernels.contact_point import jolt, make_press, meeting, push_apart, swing
 from dem_cli.kernels.deformation.matrices import load_matrix, times
+from dem_cli.kernels.deformation.pressed_faces import fan_out, share_pressure
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.kernels.joint_plane import LEAST_PUSH, moment, sweep
-from dem_cli.kernels.records import FACES
+from dem_cli.kernels.records import FACES, INTEGRATED
 from dem_cli.kernels.renewal import MOST_LEFT, is_due, renew
 from dem_cli.kernels.separation import minus3, row3
 from dem_cli.kernels.spatial_features import feature_of, frame_of, on_cap, tangents3
@@ -105,12 +106,14 @@ def make_spatial_forces(
     remembers: int = 0,
     capped: bool = False,
     strains: bool = False,
+    elastic: bool = False,
 ) -> Callable:
     """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     meets: in time histories; geometry is held there while blocks hardly move. rigid: as in planar_forces.py.
     remembers: numbers of a point's memory that belong to the law. capped: joints may have caps. strains: blocks deform
-    (kernels/deformation); their faces stay plane, and geometry is measured in each step.
+    (kernels/deformation); their faces stay plane, and geometry is measured in each step. elastic: there are faces over
+    which pressure is integrated (kernels/deformation/pressed_faces.py).
     """
     assert remembers <= MOST_LEFT
     press, holds, books = make_press(law, bonded), meets and not strains, rigid and not bonded
@@ -137,6 +140,19 @@ def make_spatial_forces(
             force, torque_a, torque_b = scale(0.0, like), scale(0.0, like_rotation), scale(0.0, like_rotation)
             if strains:
                 gradient_a, gradient_b = load_matrix(stretchings, a, like), load_matrix(stretchings, b, like)
+            whole = elastic and joints.integrated[joint] == INTEGRATED
+            if whole:
+                if held:
+                    for p in range(starts[joint], starts[number + 1]):
+                        point = np.uint64(p)
+                        if stiffness[point] > 0.0:
+                            place = axpy(dt, va, load(places, point, 0, like))
+                            swept = axpy(-1.0, sweep(spin_a, axpy(-1.0, xa, place)), relative)
+                            moved = axpy(1.0, sweep(spin_b, axpy(-1.0, xb, place)), swept)
+                            gaps[point] += dt * dot(moved, load_frame(frames, point, like)[0])
+                else:
+                    fan_out(joints, number)
+                share_pressure(joints, contacts, number)
             share, rub, middle, centre = joints.torsion[joint], scale(0.0, like), scale(0.0, like), xa
             if share != 1.0:
                 centre = pressed_in_space(places, normals, stiffness, starts[joint], starts[number + 1], like)
@@ -159,13 +175,15 @@ def make_spatial_forces(
                     moved = axpy(1.0, axpy(-1.0, times(gradient_a, arm_a), times(gradient_b, arm_b)), moved)
                 if held:
                     opened = dt * dot(moved, frame[0])
-                    gap = gaps[point] + opened
+                    gap = gaps[point] if whole else gaps[point] + opened
                     gaps[point] = gap
                 else:
                     opened, gap = geometry.opened[point], gaps[point]
-                if meets and not bonded:
+                if whole:
+                    gap = contacts.lumped[point]
+                elif meets and not bonded:
                     gap = meeting(gap, opened)
-                if rigid:
+                if rigid and not whole:
                     gap -= closures[point]
                 if not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
@@ -174,7 +192,9 @@ def make_spatial_forces(
                 slide = (dt * dot(slid, frame[1]), dt * dot(slid, frame[2]))
                 before = normals[point]
                 pressed, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
-                if books:
+                if books and whole:
+                    jolts += swing(gaps[point] - opened, gaps[point], before, pressed)
+                elif books:
                     jolts += jolt(gap, opened, before, pressed)
                 n_touch += 1 if pressed != 0.0 else 0
                 lost += work
@@ -199,7 +219,7 @@ def make_spatial_forces(
         return lost
 
     flags = {"bonded": bonded, "meets": meets, "rigid": rigid, "capped": capped}
-    flags |= {"strains": strains}
+    flags |= {"strains": strains, "elastic": elastic}
     return named(spatial_forces, law, *(name if on else "" for name, on in flags.items()), str(remembers))
 
 

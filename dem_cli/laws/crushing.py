@@ -7,7 +7,7 @@ z is the closing that has gone into crushing; it stays, so that the joint unload
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -23,6 +23,7 @@ from dem_cli.laws.law import Law
 class CrushingJoint(FrictionJoint):
     """[joints.*] with law = "crushing"."""
 
+    integrable: ClassVar[bool] = False
     law: Literal["crushing"] = "crushing"
     compression: Positive = Field(description="compressive strength fc [Pa]", examples=[8e6])
 

@@ -21,6 +21,7 @@ from dem_cli.laws.stiffness import StiffJoint
 class ElasticJoint(StiffJoint):
     """[joints.*] with law = "elastic"."""
 
+    integrable: ClassVar[bool] = False
     plane_points: ClassVar[int] = 3
 
     law: Literal["elastic"] = "elastic"

@@ -35,6 +35,7 @@ GONE = 1e-9  # share of the strength below which nothing is left
 class FractureJoint(FrictionJoint):
     """[joints.*] with law = "fracture"."""
 
+    integrable: ClassVar[bool] = False
     plane_points: ClassVar[int] = 5  # a joint cracks point by point
 
     law: Literal["fracture"] = "fracture"

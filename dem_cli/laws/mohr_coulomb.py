@@ -32,6 +32,7 @@ STATE, PULLED, SLIP = 0, 1, 2  # memory: state, plastic opening [m], slip [m]
 class MohrCoulombJoint(FrictionJoint):
     """[joints.*] with law = "mohr-coulomb"."""
 
+    integrable: ClassVar[bool] = False
     plane_points: ClassVar[int] = 5  # a joint cracks point by point
 
     law: Literal["mohr-coulomb"] = "mohr-coulomb"

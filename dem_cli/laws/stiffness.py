@@ -13,12 +13,14 @@ from dem_cli.laws.profile import Profile
 # ends or vertices alone its moment is three times too stiff, and walls carry too much (docs/deformable.md).
 BENDING_POINTS = {2: 5, 3: 3}
 AREA_POINTS = {"vertices": 2, "vertices+centre": 3}  # in 3D, and points of a joint in 2D that is as stiff in bending
+INTEGRATED = "integrated"  # pressure in closed form over the face of an elastic joint, not at points
 Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
 
 
 class StiffJoint(CaseModel):
     """Normal and shear stiffness of a joint per unit area, its profile or the number of its contact points."""
 
+    integrable: ClassVar[bool] = True  # carries no tension and deforms for no good across the joint
     plane_points: ClassVar[int] = 2  # contact points of a plane joint so stiff that its stiffness drops out
 
     if TYPE_CHECKING:
@@ -33,11 +35,12 @@ class StiffJoint(CaseModel):
         description="shape of contact surfaces that are not plane; default: plane",
         examples=[{"sides": 3, "aperture": 1e-4}],
     )
-    points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices", "vertices+centre"] | None = Field(
+    points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices", "vertices+centre", "integrated"] | None = Field(
         default=None,
         description="contact points of a plane joint: so many, at Gauss-Lobatto places; in 3D so many along each side "
-        "of the area of contact, or at its vertices alone, or at its centre as well; default: 2, in 3D vertices; 5, in "
-        "3D 3, where kn is given or blocks deform (materials.NAME.young) in analyses without time; where the joint can "
+        "of the area of contact, or at its vertices alone, or at its centre as well; 'integrated': the pressure of a "
+        "joint with kn, or of blocks that deform, in closed form over the closed part; default: 2, in 3D vertices; 5, "
+        "in 3D 3, where kn is given or blocks deform (materials.NAME.young) in analyses without time; where the joint can "
         "crack 5, where it is elastic 3, in 3D vertices+centre",
         examples=[5],
     )
@@ -53,7 +56,14 @@ class StiffJoint(CaseModel):
     def _points_of_plane_joints(self) -> StiffJoint:
         if self.profile is not None and self.points is not None:
             raise KeyProblem("not allowed with 'profile': its vertices are the contact points", "points")
+        if self.points == INTEGRATED and not self.integrable:
+            raise KeyProblem(f"'{INTEGRATED}' is not allowed with law '{self.law}': its joints bond or crush", "points")
         return self
+
+    @property
+    def asks_for_points(self) -> bool:
+        """Whether the case says where its contact points are."""
+        return self.profile is not None or self.points not in (None, INTEGRATED)
 
     @property
     def bends(self) -> bool:
@@ -67,8 +77,7 @@ class StiffJoint(CaseModel):
         less than Housner's. deforms: whether the joint carries the deformation of blocks; lands: whether the analysis
         is a time history.
         """
-        free = self.points is None and self.profile is None
-        return free and self.bends and not lands and (deforms or self.kn != "auto")
+        return not self.asks_for_points and self.bends and not lands and (deforms or self.kn != "auto")
 
     def contact_points(self, dimension: int, deforms: bool = False, lands: bool = False) -> int:
         """Number of contact points of a plane joint in 2D; in 3D along each side of its area, where 2 are its vertices.
@@ -81,7 +90,7 @@ class StiffJoint(CaseModel):
             return BENDING_POINTS[dimension]
         if dimension == 3:
             return 2
-        return self.plane_points if self.points is None else AREA_POINTS[self.points]
+        return AREA_POINTS.get(str(self.points), self.plane_points)
 
     def centred(self, dimension: int, deforms: bool = False, lands: bool = False) -> bool:
         """Whether its contact points are the vertices and the centre of an area. deforms, lands: as in `follows`."""

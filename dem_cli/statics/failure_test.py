@@ -43,7 +43,7 @@ class FailureTest:
         linked = measures.link_scale(sim)  # ties may take over only when blocks have gone as far as they stretch
         far, rests = proof.far, 0.0 if plateau else proof.beyond * reach * scale
         if not plateau:
-            far = max(far, proof.far_per_depth * sim.depth**2)
+            far = max(far, proof.far_per_depth * sim.depth**2, proof.closing if sim.integrates else 0.0)
         self.far = max(far * scale, proof.not_elastic * linked)
         if sim.kinematics == "large" and len(sim.free):  # on soft joints that would be a long way
             width = float(np.median(sim.widths[sim.free]))

@@ -37,11 +37,14 @@ class PosedIncrement(NamedTuple):
 
 
 def why_not(sim: Simulation) -> str | None:
-    """Why implicit increments do not apply: a law without a friction cone, profiles, ties, blocks that deform."""
+    """Why implicit increments do not apply: a law without a friction cone, profiles, ties, joints or blocks that are
+    elastic."""
     from dem_cli.limit.cone import friction_of
 
     if sim.links or sim.model.n_modes or sim.properties.rough:
         return "no implicit increments with ties, profiles or blocks that deform"
+    if sim.integrates:
+        return "no implicit increments with joints of given stiffness"
     if sim.loads_follow:
         return "no implicit increments with loads that follow their blocks"
     try:

@@ -14,6 +14,7 @@ import numpy as np
 
 from dem_cli.kernels.contact_forces import pressed_at
 from dem_cli.kernels.contact_point import friction_work, plastic_slide
+from dem_cli.kernels.deformation.pressed_faces import line_gaps
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import (
     add_moment_at,
@@ -28,11 +29,12 @@ from dem_cli.kernels.joint_plane import (
     torsion_of,
     torsion_share,
 )
+from dem_cli.kernels.records import INTEGRATED
 from dem_cli.kernels.tiles.joint_tiles import N_TORSION, TILES_AHEAD, TILES_OF_CHUNK
 from dem_cli.kernels.tiles.lanes import LANES, ROW, lowest_bit, put, take, take_frame
 from dem_cli.kernels.vec import axpy, components, compose, load, norm, scale, store
 
-ONE, TWO = np.uint64(1), np.uint64(2)
+ONE, TWO, TWO_POINTS = np.uint64(1), np.uint64(2), 2
 
 
 class TiledForces(NamedTuple):
@@ -102,8 +104,13 @@ def _move(tiles, velocities, tile, motion, like, like_rotation):
         put(moves, turns + R + lane, load(velocities, b, d, like_rotation))
 
 
-def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
-    """Tiles for one law in its form for lanes (laws/law.py), which reads n_numbers parameters of a joint."""
+def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> TiledForces:
+    """Tiles for one law in its form for lanes (laws/law.py).
+
+    n_numbers: numbers of a joint that the tiles keep: parameters that the law reads; elastic: in the plane, and last
+    whether the pressure is integrated over the line (kernels/deformation/pressed_faces.py).
+    """
+    of_the_law = n_numbers - 1 if elastic else n_numbers
 
     @inline
     def take_up(joints, contacts, first, last, like, like_rotation):
@@ -131,8 +138,10 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
                         centre = pressed_at(joints.places, contacts.normal, start, start + count, like, like_rotation)
                         numbers[drawn] = torsion_share(joints.torsion, joint, like)
                         put(numbers, drawn + ROW, centre)
-                    for k in range(n_numbers):
+                    for k in range(of_the_law):
                         numbers[drawn + np.uint64(n_drawn + k) * ROW] = joints.law[joint, k]
+                    if elastic:
+                        numbers[drawn + np.uint64(n_drawn + of_the_law) * ROW] = float(joints.integrated[joint])
                 for p in range(slots):
                     at, now = row + of_tile + np.uint64(p) * of_slot, held + np.uint64(p) * of_slot + lane
                     if p >= count:  # there is none: it never touches
@@ -160,10 +169,17 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
                 joint = tiles.joints[np.uint64(t) * ROW + lane]
                 if joint < 0:
                     continue
+                low, high, whole = 0.0, 0.0, False
+                if elastic:
+                    now, whole = np.uint64(tiles.slots[t]) * of_slot + lane, joints.integrated[joint] == INTEGRATED
+                    if whole:
+                        low, high = line_gaps(state[now], state[now + of_slot])
                 for p in range(joints.starts[joint + 1] - joints.starts[joint]):
                     now, point = np.uint64(tiles.slots[t] + p) * of_slot + lane, joints.starts[joint] + p
                     gap = state[now]
                     contacts.gaps[point] = gap
+                    if whole:
+                        gap = low if p == 0 else high
                     contacts.normal[point] = -joints.kn[point] * gap if gap < 0.0 else 0.0
                     for k in range(d - 1):
                         contacts.shear[point, k] = state[now + np.uint64(1 + k) * ROW]
@@ -215,8 +231,17 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
                 kn, ks = numbers[at + T + lane], numbers[at + D + lane]
                 spin, old = take(work, spins + lane, like_rotation), take(state, now + ROW + lane, like[1:])
                 gap = state[now + lane] + (work[room + lane] + opening_at(spin, place))
+                shown = gap
+                if elastic and p < TWO_POINTS and count >= TWO:
+                    next_at, next_now = (at + S, now + S) if p == 0 else (at - S, now - S)
+                    beside = state[next_now + lane]  # a point before is where it is now already
+                    if p == 0:
+                        beside += work[room + lane] + opening_at(spin, take(numbers, next_at + lane, like[1:]))
+                    low, high = line_gaps(gap, beside) if p == 0 else line_gaps(beside, gap)
+                    whole = work[of_law + np.uint64(of_the_law) * ROW + lane] > 0.0
+                    shown = (low if p == 0 else high) if whole else gap
                 slide = sliding_at(take(work, slides + lane, like[1:]), spin, place)
-                normal, shear, loses = law(gap, slide, old, kn, ks, work, of_law + lane)
+                normal, shear, loses = law(shown, slide, old, kn, ks, work, of_law + lane)
                 state[now + lane] = gap
                 put(state, now + ROW + lane, shear)
                 put(marks, before + lane, old)
@@ -266,10 +291,15 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
             q, old_q = take(numbers, second + lane, like[1:]), take(state, next_held + ROW + lane, like[1:])
             gap_p = state[held + lane] + (opens + opening_at(spin, p))
             gap_q = state[next_held + lane] + (opens + opening_at(spin, q))
+            lump_p, lump_q = gap_p, gap_q
+            if elastic:
+                whole = numbers[of_law + np.uint64(of_the_law) * ROW + lane] > 0.0
+                at_p, at_q = line_gaps(gap_p, gap_q)
+                lump_p, lump_q = at_p if whole else gap_p, at_q if whole else gap_q
             kn, ks, slid = numbers[first + T + lane], numbers[first + D + lane], sliding_at(slide, spin, p)
-            push_p, rub_p, loses_p = law(gap_p, slid, old_p, kn, ks, numbers, of_law + lane)
+            push_p, rub_p, loses_p = law(lump_p, slid, old_p, kn, ks, numbers, of_law + lane)
             kn, ks, slid = numbers[second + T + lane], numbers[second + D + lane], sliding_at(slide, spin, q)
-            push_q, rub_q, loses_q = law(gap_q, slid, old_q, kn, ks, numbers, of_law + lane)
+            push_q, rub_q, loses_q = law(lump_q, slid, old_q, kn, ks, numbers, of_law + lane)
             state[held + lane], state[next_held + lane] = gap_p, gap_q
             put(state, held + ROW + lane, rub_p)
             put(state, next_held + ROW + lane, rub_q)
@@ -361,4 +391,4 @@ def make_tiled_forces(law: Callable, n_numbers: int) -> TiledForces:
                     like_rotation,
                 )
 
-    return TiledForces(*(named(part, law) for part in (take_up, press, give_back)))
+    return TiledForces(*(named(part, law, *["elastic"] * elastic) for part in (take_up, press, give_back)))

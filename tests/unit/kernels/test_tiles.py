@@ -48,8 +48,8 @@ def state(sim: Simulation) -> list[np.ndarray]:
 def stepped(sim: Simulation, mode: int, tiled: bool, plain: bool, n_steps: int = 40) -> list[np.ndarray]:
     """The state after some steps of one loop or the other."""
     if tiled:
-        sim.tracking.tile(sim.law.n_of_lanes, 1)
-    loop = compiled_advance(sim.kinematics, sim.law, dimension=sim.model.dimension, tiled=tiled)
+        sim.tracking.tile(sim.n_in_lanes, 1)
+    loop = compiled_advance(sim.kinematics, sim.law, dimension=sim.model.dimension, tiled=tiled, elastic=sim.integrates)
     (loop.py_func if plain else loop)(
         n_steps, mode, 1.0, sim.bodies, sim.shape, sim.joints, sim.geometry, sim.contacts, sim.links, sim.loads,
         sim.control, sim.ledger, sim.like, sim.like_rotation,
