@@ -18,7 +18,7 @@ from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
 from dem_cli.laws.mixed import mixed, row
 from dem_cli.laws.registry import LAWS
-from dem_cli.laws.stiffness import INTEGRATED, StiffJoint
+from dem_cli.laws.stiffness import StiffJoint
 from dem_cli.laws.strength import reduced
 from dem_cli.model.model import Model
 from dem_cli.model.scales import stiffness_scale
@@ -74,9 +74,7 @@ def joint_properties(
     deforming = _with_deforming_blocks(model, lying, compliance, np.flatnonzero(bending))
     bent = set(lying[:, np.flatnonzero(bending)].ravel().tolist())  # two points cannot tell how a block bends
     lands = hasattr(case.analysis, "margin") if lands is None else lands
-    integrated = np.array(
-        [integrates and table.points == INTEGRATED and k not in bent for k, table in enumerate(tables)]
-    )
+    integrated = np.array([integrates and table.integrates and k not in bent for k, table in enumerate(tables)])
     layouts = tuple(
         None if integrated[k] and (k in deforming or table.kn != "auto")
         else _layout(table, case, k in deforming, lands and k not in bent)

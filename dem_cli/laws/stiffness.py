@@ -9,11 +9,10 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import CaseModel, KeyProblem, Name
 from dem_cli.laws.profile import Profile
 
-# Contact points of a plane joint whose stiffness is a property, by dimension; in 3D along each side. With points at its
-# ends or vertices alone its moment is three times too stiff, and walls carry too much (docs/deformable.md).
+# Contact points of a plane joint whose stiffness is a property but is not integrated, by dimension; in 3D along each
+# side. With points at its ends or vertices alone its moment is three times too stiff (docs/deformable.md).
 BENDING_POINTS = {2: 5, 3: 3}
 AREA_POINTS = {"vertices": 2, "vertices+centre": 3}  # in 3D, and points of a joint in 2D that is as stiff in bending
-INTEGRATED = "integrated"  # pressure in closed form over the face of an elastic joint, not at points
 Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
 
 
@@ -35,13 +34,13 @@ class StiffJoint(CaseModel):
         description="shape of contact surfaces that are not plane; default: plane",
         examples=[{"sides": 3, "aperture": 1e-4}],
     )
-    points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices", "vertices+centre", "integrated"] | None = Field(
+    points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices", "vertices+centre"] | None = Field(
         default=None,
         description="contact points of a plane joint: so many, at Gauss-Lobatto places; in 3D so many along each side "
-        "of the area of contact, or at its vertices alone, or at its centre as well; 'integrated': the pressure of a "
-        "joint with kn, or of blocks that deform, in closed form over the closed part; default: 2, in 3D vertices; 5, "
-        "in 3D 3, where kn is given or blocks deform (materials.NAME.young) in analyses without time; where the joint can "
-        "crack 5, where it is elastic 3, in 3D vertices+centre",
+        "of the area of contact, or at its vertices alone, or at its centre as well; default: 2, in 3D vertices, with "
+        "the pressure integrated over the closed part where kn is given or blocks deform (materials.NAME.young); where "
+        "the joint can crack 5, where it can crush and kn is given 5, in 3D 3, where it is elastic 3, in 3D "
+        "vertices+centre",
         examples=[5],
     )
 
@@ -56,14 +55,17 @@ class StiffJoint(CaseModel):
     def _points_of_plane_joints(self) -> StiffJoint:
         if self.profile is not None and self.points is not None:
             raise KeyProblem("not allowed with 'profile': its vertices are the contact points", "points")
-        if self.points == INTEGRATED and not self.integrable:
-            raise KeyProblem(f"'{INTEGRATED}' is not allowed with law '{self.law}': its joints bond or crush", "points")
         return self
 
     @property
     def asks_for_points(self) -> bool:
         """Whether the case says where its contact points are."""
-        return self.profile is not None or self.points not in (None, INTEGRATED)
+        return self.profile is not None or self.points is not None
+
+    @property
+    def integrates(self) -> bool:
+        """Whether its pressure is integrated over its face where it is elastic."""
+        return self.integrable and not self.asks_for_points
 
     @property
     def bends(self) -> bool:
@@ -90,7 +92,7 @@ class StiffJoint(CaseModel):
             return BENDING_POINTS[dimension]
         if dimension == 3:
             return 2
-        return AREA_POINTS.get(str(self.points), self.plane_points)
+        return self.plane_points if self.points is None else AREA_POINTS[self.points]
 
     def centred(self, dimension: int, deforms: bool = False, lands: bool = False) -> bool:
         """Whether its contact points are the vertices and the centre of an area. deforms, lands: as in `follows`."""
