@@ -13,7 +13,7 @@ import numpy as np
 from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart, swing
 from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
-from dem_cli.kernels.deformation.pressed_faces import line_gaps
+from dem_cli.kernels.deformation.pressed_faces import line_gaps, rubbing_together
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.planar_geometry import apart, overlap_of, place_end, refresh_lengths
@@ -93,8 +93,15 @@ def make_planar_forces(
             if strains:
                 gradient_a, gradient_b = load_matrix(stretchings, a, like), load_matrix(stretchings, b, like)
             xa, xb = load(positions, a, 0, like), load(positions, b, 0, like)
+            if elastic:
+                low = place_end(xa, xb, share_low, true_low, ta, tb, a0, b1)
+                high = place_end(xa, xb, share_high, true_high, ta, tb, a1, b0)
+                if whole:
+                    low, high = rubbing_together(low, high, gap_low, gap_high)
             if on_low:
-                frame, levers_a, levers_b, place = place_end(xa, xb, share_low, true_low, ta, tb, a0, b1)
+                if not elastic:
+                    low = place_end(xa, xb, share_low, true_low, ta, tb, a0, b1)
+                frame, levers_a, levers_b, place = low
                 if keeps:
                     frames[first, 0], frames[first, 1] = frame[0]
                     levers[first, 0], levers[first, 1] = levers_a[0][0], levers_a[1][0]
@@ -116,7 +123,9 @@ def make_planar_forces(
                 if strains:
                     stretch_apart(bodies.dyads, a, b, compose(frame, normal, shear, scale(0.0, like)), arm_a, arm_b)
             if on_high:
-                frame, levers_a, levers_b, place = place_end(xa, xb, share_high, true_high, ta, tb, a1, b0)
+                if not elastic:
+                    high = place_end(xa, xb, share_high, true_high, ta, tb, a1, b0)
+                frame, levers_a, levers_b, place = high
                 if keeps:
                     frames[second, 0], frames[second, 1] = frame[0]
                     levers[second, 0], levers[second, 1] = levers_a[0][0], levers_a[1][0]

@@ -188,7 +188,11 @@ def make_spatial_forces(
                 if not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
                 n_loaded += 1
-                slid = axpy(share, moved, middle)
+                rubs, drop = moved, 0.0
+                if whole and share != 1.0:  # in the plane through the centre of pressure: a gaping face has no lever
+                    drop = dot(axpy(-1.0, centre, place), frame[0])
+                    rubs = axpy(drop, axpy(-1.0, sweep(spin_b, frame[0]), sweep(spin_a, frame[0])), moved)
+                slid = axpy(share, rubs, middle)
                 slide = (dt * dot(slid, frame[1]), dt * dot(slid, frame[2]))
                 before = normals[point]
                 pressed, shear, work = press(gap, opened, slide, joints, contacts, joint, point)
@@ -204,6 +208,9 @@ def make_spatial_forces(
                 force, rub = axpy(1.0, pushed, force), axpy(1.0, rubbed, rub)
                 torque_a = axpy(1.0, moment(arm_a, turning), torque_a)
                 torque_b = axpy(1.0, moment(arm_b, turning), torque_b)
+                if whole and share != 1.0:
+                    tilt = moment(frame[0], rubbed)
+                    torque_a, torque_b = axpy(-share * drop, tilt, torque_a), axpy(-share * drop, tilt, torque_b)
                 if strains:
                     stretch_apart(bodies.dyads, a, b, pushed, arm_a, arm_b)
             if meets:

@@ -33,10 +33,12 @@ SCRIPT = """
 import sys, time
 from pathlib import Path
 from dem_cli import api
+from dem_cli.output import store
 from dem_cli.output.resume.stages import Keeping
 from dem_cli.output.store import ResultWriter
 from dem_cli.pipeline.batches import BatchOptions
 from dem_cli.pipeline.execution import Destination, run_case
+store._BUFFERED_SAMPLES, store._UNFLUSHED = 1024, 1_000_000  # a short run reaches the disk several times
 options = BatchOptions(1, sys.argv[3] == "resume", Keeping(0.0, 0.02, 0.0))
 run_case(api.load_case(sys.argv[1]), Destination(Path(sys.argv[2])), time.perf_counter(), options=options)
 """

@@ -96,6 +96,7 @@ def through_loop(
         places=np.zeros((n, d - 1)),
         kn=np.array([j.kn * j.area for j in joints]), ks=np.array([j.ks * j.area for j in joints]),
         law=np.stack([row(laws, j.law, j.columns, max(len(i.columns) for i in joints)) for j in joints]),
+        torsion=np.ones(n),
     )  # fmt: skip
     contacts = empty_contacts(n, n, d, mixed(laws).n_memory(d))
     contacts.gaps[:] = start

@@ -35,6 +35,25 @@ def line_gaps(low, high):
 
 
 @always_inline
+def rubbing_together(low, high, gap_low, gap_high):
+    """Both ends of a line that rubs where its pressure acts: frame, levers and place of each, with one lever along it.
+
+    low, high: frame, levers of both blocks and place of each end; gap_low, gap_high: as `line_gaps` leaves them [m].
+    Friction at ends of which one gapes would have a moment about the other, that no face has.
+    """
+    on_low, on_high = max(-gap_low, 0.0), max(-gap_high, 0.0)
+    total = on_low + on_high
+    part = on_low / total if total > 0.0 else 0.5
+    (frame_low, a_low, b_low, at_low), (frame_high, a_high, b_high, at_high) = low, high
+    along_a = (part * a_low[1][0] + (1.0 - part) * a_high[1][0],)
+    along_b = (part * b_low[1][0] + (1.0 - part) * b_high[1][0],)
+    return (
+        (frame_low, (a_low[0], along_a), (b_low[0], along_b), at_low),
+        (frame_high, (a_high[0], along_a), (b_high[0], along_b), at_high),
+    )
+
+
+@always_inline
 def _at_corner(a, b, c):
     """∫ of the overlap × N of each corner, over the area, of the part where the overlap has the sign that it has at a.
 

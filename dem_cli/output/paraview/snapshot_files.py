@@ -111,6 +111,4 @@ class ParaViewFiles:
             points = np.concatenate([at.places.at(frame.positions, frame.orientations) for at, frame in drawn])
             forces = np.concatenate([at.forces for at, _ in drawn]).astype(np.float32)
             largest = np.concatenate([at.largest() for at, _ in drawn]).astype(np.float32)
-            self.links.add(
-                values, in_space(np.concatenate(points)), {"force": forces}, {"largest_force": largest}, steps
-            )
+            self.links.add(values, in_space(points), {"force": forces}, {"largest_force": largest}, steps)

@@ -22,6 +22,7 @@ _PLACES = {
     "dynamics.coda": ("Ending", "Swings"),
     "dynamics.collapse_criterion": ("CollapsedBlock",),
     "dynamics.snapshots": ("EvenTimes", "Intervals"),
+    "engine.loads": ("ActingForces",),
     "engine.measures": ("EnergySums",),
     "engine.placement.clearances": ("Play",),
     "engine.settings": ("DetectionSettings",),
