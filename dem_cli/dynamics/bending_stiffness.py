@@ -29,7 +29,8 @@ def bending_doubts(case: Case, model: Model, settings: Settings = DEFAULT) -> li
 
     None where the case says how many points they have, or where blocks hardly turn further with those of bending.
     """
-    ends, bending = (joint_properties(case, model, settings.stiffness.dynamics, lands=lands) for lands in (True, False))
+    ratio = settings.stiffness.dynamics
+    ends, bending = (joint_properties(case, model, ratio, lands=lands, integrates=False) for lands in (True, False))
     soft = np.array([one != other for one, other in zip(ends.layouts, bending.layouts, strict=True)])
     if not soft.any() or model.fixed.all():
         return []

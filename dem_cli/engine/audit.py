@@ -171,11 +171,16 @@ def _leaning_automatically(case: Case, sim: Simulation) -> list[str]:
 
 
 def _leaning(case: Case, sim: Simulation, moved: float | None) -> list[str]:
-    """Where the case asks for geometry that moves nobody has looked for the load of blocks on stiff joints."""
+    """Where the case asks for geometry that moves nobody has looked for the load of blocks on stiff joints.
+
+    A block that rocks on a face without tension carries b/h (1 − 2c/3b − hθ/b), which is largest where c = 3hθ: its
+    centre has then moved by u = hθ/2, and 6 u/b of the load is lost. Points at the ends of a joint lose u/b alone.
+    """
     if case.analysis.kinematics != "large" or not sim.properties.given or moved is None:
         return []
     share = moved / float(np.median(sim.widths[sim.free]))
-    if share <= sim.settings.doubts.leans:
+    doubts = sim.settings.doubts
+    if share <= (doubts.leans_pressed if sim.integrates else doubts.leans):
         return []
     return [
         f"with the given kn blocks move {share:.2g} of their width before failure: the failure load may differ from "

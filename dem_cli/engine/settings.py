@@ -139,6 +139,7 @@ class DoubtSettings:
     shear_low: float = 0.01  # ks/kn of given joints that structures were tested with
     shear_high: float = 10.0
     leans: float = 0.006  # displacement before failure, in widths: loads were more than 0.5 % off beyond
+    leans_pressed: float = 8e-4  # where pressure is integrated: a block that rocks loses six times this (see there)
     lumped: float = 0.5  # kn h/E of joints that carry the deformation of blocks: a wall gave way by 2 % too much at 0.4
     unbending: float = 0.1  # the same of blocks of uniform strain: a column that bends gave way by 8 % too little
     uneven: float = 1e3  # how much faster than another a block may fall in pseudo-time

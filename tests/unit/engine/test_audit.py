@@ -47,10 +47,16 @@ def test_nothing_is_said_where_nothing_is_doubtful():
     assert said(CRATE) == ""
 
 
-@pytest.mark.parametrize(("softness", "warns"), [(1e3, True), (1e5, False)])
-def test_soft_given_joints_under_geometry_that_moves(softness, warns):
-    """A slender block that leans on its joint: 1.8 % and 0.06 % below the load on a stiff one."""
+@pytest.mark.parametrize(
+    ("softness", "points", "warns"), [(1e3, 2, True), (1e5, 2, False), (1e5, None, True), (1e8, None, False)]
+)
+def test_soft_given_joints_under_geometry_that_moves(softness, points, warns):
+    """A slender block that leans on its joint.
+
+    With points at its ends 1.8 and 0.06 % below the load on a stiff one; where its face presses in part 5 and 0.4 %.
+    """
     needle = block("needle", rectangle(0, 0, 0.25, 1))
     joint = {"friction": 1.0, "kn": softness * 0.25 * 2000.0 * 9.81 / (0.5 * 0.25)}
+    joint |= {} if points is None else {"points": points}
     text = said(needle, joints={"dry": joint}, analysis={"kinematics": "large", "follow": 0.0})
     assert ("of their width" in text) is warns
