@@ -123,9 +123,8 @@ def simulation(case: dict | Path, kinematics: str = "fixed", ratio: float = 1e6)
 
 def steps(sim: Simulation, n: int, mode: int = slot.HOLD_LOAD, dt: float = 1.0) -> int:
     """Straight to the compiled loop, with a time step and without detection."""
-    loop = compiled_advance(
-        sim.kinematics, sim.law, sim.properties.profiled, sim.model.dimension, sim.kinds_of_links, elastic=sim.integrates
-    )  # fmt: skip
+    kinds, profiled = sim.kinds_of_links, sim.properties.profiled
+    loop = compiled_advance(sim.kinematics, sim.law, profiled, sim.model.dimension, kinds, elastic=sim.integrates)
     return loop(
         n, mode, dt, sim.bodies, sim.shape, sim.joints, sim.geometry, sim.contacts, sim.links, sim.loads,
         sim.control, sim.ledger, sim.like, sim.like_rotation,

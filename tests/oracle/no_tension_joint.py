@@ -34,7 +34,7 @@ def turns_of_a_rectangle(force: float, arms: tuple[float, float], sides: tuple[f
     x, weights = 0.5 * sides[0] * x, 0.5 * sides[0] * weights
 
     def of_strips(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Force and first moment along y of strips whose closing at both ends is given, pressed where it is positive."""
+        """Force and first moment along y of strips by the closing at both ends, where it is positive."""
         slope = (high - low) / sides[1]
         first = np.where(low > 0.0, 0.0, np.where(slope > 0.0, -low / np.where(slope == 0.0, 1.0, slope), sides[1]))
         last = np.where(high > 0.0, sides[1], np.where(slope < 0.0, -low / np.where(slope == 0.0, 1.0, slope), 0.0))
