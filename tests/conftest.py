@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,8 @@ os.environ.setdefault("DEM_CACHE_DIR", str(ROOT / ".numba_cache"))
 os.environ.setdefault("MPLBACKEND", "Agg")
 os.environ.setdefault("DEM_STRICT_KERNELS", "1")  # no kernel is compiled another way, or never kept, in silence
 os.environ.setdefault("DEM_TRACEBACK", "1")  # a fault of the program that a command turned into exit code 70
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # each process of a test would compile the whole package: 1.5 s
+sys.dont_write_bytecode = False
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell starts what runs behind it so: tests press Ctrl-C
     signal.signal(signal.SIGINT, signal.default_int_handler)
 FOLDERS = [str(ROOT), str(ROOT / "tests"), str(ROOT / "scripts")]  # of what tests and their processes import

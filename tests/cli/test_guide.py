@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
+from parsed import nodes
 from shown import NOT_RUN, Reader, blocks
 
 from dem_cli.cli.new import TEMPLATE_KINDS
@@ -67,7 +68,7 @@ def messages() -> list[str]:
     """Every string of the package, with … where an f-string has values."""
     found = []
     for path in (ROOT / "dem_cli").rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             if isinstance(node, ast.JoinedStr):
                 parts = [part.value if isinstance(part, ast.Constant) else "…" for part in node.values]
                 found.append("".join(map(str, parts)))

@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
+from parsed import tree
+
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 # Rooms that only show, write for others or measure, and the one that replaces what is forbidden.
 FREE = {"arithmetic", "bench", "cli", "exports", "post", "render", "report", "verify"}
@@ -36,10 +38,10 @@ SOURCES = sorted(
 )
 
 
-def forbidden(tree: ast.Module) -> set[str]:
+def forbidden(module: ast.Module) -> set[str]:
     """Names that give other last digits on other processors, and `@`."""
     found = set()
-    for node in ast.walk(tree):
+    for node in ast.walk(module):
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
             found.add("@")
         elif isinstance(node, ast.ImportFrom) and node.module in ("scipy.linalg", "scipy.sparse.linalg"):
@@ -58,12 +60,12 @@ def test_nothing_depends_on_the_processor():
     for path in SOURCES:
         name = path.relative_to(PACKAGE).as_posix()
         allowed = {what for file, what in EXEMPT if file == name} | ({"@"} if name in SPARSE else set())
-        found = forbidden(ast.parse(path.read_text(encoding="utf-8"))) - allowed
+        found = forbidden(tree(path)) - allowed
         wrong |= {name: sorted(found)} if found else {}
     assert not wrong, f"use dem_cli/arithmetic in the place of {wrong}"
 
 
 def test_the_tables_name_nothing_that_is_gone():
     for name in SPARSE | {file for file, _ in EXEMPT}:
-        found = forbidden(ast.parse((PACKAGE / name).read_text(encoding="utf-8")))
+        found = forbidden(tree(PACKAGE / name))
         assert found >= {what for file, what in EXEMPT if file == name} | ({"@"} if name in SPARSE else set()), name

@@ -8,6 +8,8 @@ import sys
 import tomllib
 from pathlib import Path
 
+from parsed import nodes
+
 from dem_cli.version import __version__
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -35,7 +37,7 @@ def imported(*folders: str) -> set[str]:
     found = set()
     for folder in folders:
         for path in (ROOT / folder).rglob("*.py"):
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            for node in nodes(path):
                 if isinstance(node, ast.Import):
                     found |= {alias.name.split(".")[0] for alias in node.names}
                 elif isinstance(node, ast.ImportFrom) and node.module:

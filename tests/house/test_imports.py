@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from parsed import nodes
 
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 
@@ -242,7 +243,7 @@ def dotted(path: Path) -> str:
 def imported(path: Path) -> frozenset[str]:
     """Every module that a file imports or names in a string, at any depth, `from x import y` as x.y."""
     names = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import ast
 import re
+from functools import cache
 from pathlib import Path
+
+from parsed import nodes
 
 from dem_cli.links.registry import LINKS
 from dem_cli.output.resume.kept_records import RECORDS
@@ -13,13 +16,10 @@ PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 NAME = re.compile(r"[A-Z]\w+")
 
 
+@cache
 def classes():
     """Classes of the package by name."""
-    trees = (ast.parse(path.read_text(encoding="utf-8")) for path in PACKAGE.rglob("*.py"))
-    return {node.name: node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ClassDef)}
-
-
-CLASSES = classes()
+    return {node.name: node for path in PACKAGE.rglob("*.py") for node in nodes(path) if isinstance(node, ast.ClassDef)}
 
 
 def lasts(of):
@@ -30,7 +30,7 @@ def lasts(of):
 
 def named_in(annotation):
     """Classes of the package that an annotation names."""
-    return {name for name in NAME.findall(ast.unparse(annotation)) if name in CLASSES and not lasts(CLASSES[name])}
+    return {name for name in NAME.findall(ast.unparse(annotation)) if name in classes() and not lasts(classes()[name])}
 
 
 def test_each_is_where_it_is_said_to_be():
@@ -40,16 +40,16 @@ def test_each_is_where_it_is_said_to_be():
 
 
 def test_what_records_hold_is_kept_too():
-    fields = [node for name in RECORDS for node in CLASSES[name].body if isinstance(node, ast.AnnAssign)]
+    fields = [node for name in RECORDS for node in classes()[name].body if isinstance(node, ast.AnnAssign)]
     named = set().union(*(named_in(node.annotation) for node in fields))
     assert len(named) > 5
-    assert not {name for name in named - set(RECORDS) if "Protocol" not in map(ast.unparse, CLASSES[name].bases)}
+    assert not {name for name in named - set(RECORDS) if "Protocol" not in map(ast.unparse, classes()[name].bases)}
 
 
 def test_what_stages_give_is_kept():
     found = set()
     for path in PACKAGE.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             decorators = getattr(node, "decorator_list", []) if isinstance(node, ast.FunctionDef) else []
             if any(ast.unparse(each) == "stage" for each in decorators):
                 found |= named_in(node.returns)
@@ -58,7 +58,7 @@ def test_what_stages_give_is_kept():
 
 
 def test_links_of_a_simulation_are_kept():
-    kinds = {name for name, node in CLASSES.items() if {"started", "acting"} <= {f.name for f in methods(node)}}
+    kinds = {name for name, node in classes().items() if {"started", "acting"} <= {f.name for f in methods(node)}}
     kinds -= {"LinkArrays"}  # what they have in common
     assert len(kinds) == len(LINKS)
     assert kinds <= set(RECORDS)

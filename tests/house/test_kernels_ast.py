@@ -7,13 +7,14 @@ import re
 from pathlib import Path
 
 import pytest
+from parsed import nodes, tree
 
 from dem_cli.kernels.compilation.cache_folder import compiled_sources
 
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 BEHIND_IT = PACKAGE / "kernels" / "compilation"  # may name numba
 TEXTS = {path: path.read_text(encoding="utf-8") for path in sorted(PACKAGE.rglob("*.py"))}
-TREES = {path: ast.parse(text) for path, text in TEXTS.items() if "kernels.jit import" in text}  # users of the one door
+TREES = {path: tree(path) for path, text in TEXTS.items() if "kernels.jit import" in text}  # users of the one door
 COMPILED = {"always_inline", "kernel", "inline"}  # the decorators of jit.py
 OF_NUMBA = {"njit", "jit", "vectorize", "guvectorize", "stencil", "cfunc", "intrinsic", "register_jitable"}
 IO = {"print", "open", "input", "exec", "eval"}
@@ -109,7 +110,7 @@ def test_one_door_to_numba():
     """Nothing outside `kernels/compilation` imports numba or llvmlite, or decorates with what is theirs."""
     word = re.compile(rf"llvmlite|numba|@({'|'.join(OF_NUMBA)})\b")
     for path in (path for path, text in TEXTS.items() if word.search(text) and BEHIND_IT not in path.parents):
-        for node in ast.walk(ast.parse(TEXTS[path])):
+        for node in nodes(path):
             if isinstance(node, ast.FunctionDef):
                 assert not decorator_names(node) & OF_NUMBA, path
             named = [node.module or ""] if isinstance(node, ast.ImportFrom) else []

@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
+from parsed import nodes
+
 ROOT = Path(__file__).resolve().parents[2]
 MODULES = sorted((ROOT / "dem_cli").rglob("*.py"))
 SAY_NOTHING = {"common", "core", "data", "helper", "helpers", "lib", "manager", "misc", "stuff",
@@ -15,7 +17,7 @@ def classes() -> dict[str, list[str]]:
     """Files of each class, by its name."""
     found: dict[str, list[str]] = {}
     for path in MODULES:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             if isinstance(node, ast.ClassDef):
                 found.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
     return found
@@ -29,7 +31,7 @@ def test_no_dead_constant():
     """Every constant of a module is read somewhere in the package."""
     read, constants = set(), []
     for path in MODULES:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             if isinstance(node, ast.Assign):  # those that are told apart by numbers, A, B = 0, 1, go together
                 names = [target.id for target in node.targets if isinstance(target, ast.Name)]
                 constants += [(name, path) for name in names if name.isupper()]

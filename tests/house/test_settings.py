@@ -8,13 +8,13 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import pytest
+from parsed import nodes, tree
 
 from dem_cli.engine.settings import DEFAULT
 
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 ROOMS = ("limit", "engine", "statics", "dynamics", "ensembles", "analyses")
 SOURCES = [path for room in ROOMS for path in sorted((PACKAGE / room).rglob("*.py"))]
-TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in SOURCES}
 DEFAULTS = {"DEFAULT", "DEFAULT_LIMIT"}
 
 
@@ -37,8 +37,8 @@ def read() -> set[tuple[str, str]]:
     """Every attribute that the solvers read, and the last word of what it is read of."""
     return {
         (last_word(node.value), node.attr)
-        for tree in TREES.values()
-        for node in ast.walk(tree)
+        for path in SOURCES
+        for node in nodes(path)
         if isinstance(node, ast.Attribute)
     }
 
@@ -77,8 +77,8 @@ def of_class(node: ast.ClassDef) -> dict[str, int]:
 def expecting() -> dict[str, dict[str, int]]:
     """Functions and classes that go on with the default settings where they are given none."""
     found: dict[str, dict[str, int]] = {}
-    for tree in TREES.values():
-        for node in tree.body:
+    for path in SOURCES:
+        for node in tree(path).body:
             if isinstance(node, ast.FunctionDef):
                 found[node.name] = of_function(node, method=False)
             elif isinstance(node, ast.ClassDef):
@@ -89,10 +89,10 @@ def expecting() -> dict[str, dict[str, int]]:
     return {name: places for name, places in found.items() if places}
 
 
-def met(tree: ast.Module) -> set[str]:
+def met(module: ast.Module) -> set[str]:
     """Names that a file imports or defines: what is called by another one came as an argument."""
-    imports = (node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom))
-    made = (node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef))
+    imports = (node for node in ast.walk(module) if isinstance(node, ast.ImportFrom))
+    made = (node.name for node in module.body if isinstance(node, ast.FunctionDef | ast.ClassDef))
     return {alias.asname or alias.name for node in imports for alias in node.names} | {*made}
 
 
@@ -108,9 +108,9 @@ def called(node: ast.Call, names: set[str]) -> str:
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: f"{path.parent.name}.{path.stem}")
 def test_settings_are_handed_on(path):
-    waiting, names = expecting(), met(TREES[path])
+    waiting, names = expecting(), met(tree(path))
     lost = []
-    for node in ast.walk(TREES[path]):
+    for node in nodes(path):
         if not isinstance(node, ast.Call) or any(isinstance(argument, ast.Starred) for argument in node.args):
             continue
         target, given = called(node, names), {keyword.arg for keyword in node.keywords}

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from parsed import nodes
 
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 OUTSIDE = ("statics", "dynamics", "ensembles", "analyses", "limit", "bench", "cli", "pipeline", "public")
@@ -40,11 +41,7 @@ def written_to(target: ast.expr) -> list[str]:
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: f"{path.parent.name}.{path.stem}")
 def test_only_the_simulation_writes_its_arrays(path):
-    statements = [
-        node
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.Assign | ast.AugAssign | ast.AnnAssign)
-    ]
+    statements = [node for node in nodes(path) if isinstance(node, ast.Assign | ast.AugAssign | ast.AnnAssign)]
     assert not [
         f"{node.lineno}: {ast.unparse(target)}"
         for node in statements

@@ -6,6 +6,8 @@ import ast
 import re
 from pathlib import Path
 
+from parsed import tree
+
 ROOT = Path(__file__).resolve().parents[2]
 LINES = (ROOT / "tests" / "slow_tests.txt").read_text(encoding="utf-8").splitlines()
 NAMED = [line for line in LINES if not line.startswith("#")]
@@ -14,8 +16,8 @@ FILES = sorted((ROOT / "tests").rglob("test_*.py"))
 
 def functions(path: Path) -> set[str]:
     """Tests of a file, as the list names them."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    names = (node.name for node in tree.body if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"))
+    defined = [node.name for node in tree(path).body if isinstance(node, ast.FunctionDef)]
+    names = [name for name in defined if name.startswith("test_")]
     return {f"{path.relative_to(ROOT).as_posix()}::{name}" for name in names}
 
 

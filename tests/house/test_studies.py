@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from parsed import nodes, tree
 from studies import measured, storage
 from studies.registry import STUDIES
 
@@ -19,8 +20,8 @@ VERSIONS = storage.read(measured.NAME)
 
 
 def classes(folder: str) -> list[str]:
-    trees = (ast.parse(path.read_text(encoding="utf-8")) for path in (ROOT / folder).rglob("*.py"))
-    return [node.name for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+    sources = (ROOT / folder).rglob("*.py")
+    return [node.name for path in sources for node in nodes(path) if isinstance(node, ast.ClassDef)]
 
 
 @pytest.mark.parametrize("name", STUDIES)
@@ -43,7 +44,7 @@ def test_class_names_are_used_once():
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: f"{path.parent.name}.{path.stem}")
 def test_modules_say_what_they_are(path):
-    assert ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))), path
+    assert ast.get_docstring(tree(path)), path
 
 
 @pytest.mark.parametrize("path", DATA, ids=lambda path: path.stem)

@@ -13,6 +13,7 @@ import numba
 import numpy as np
 import pytest
 from casefiles import CASES
+from parsed import nodes
 
 import dem_cli
 from dem_cli.kernels import jit
@@ -122,7 +123,7 @@ def endings(name: str) -> list[str]:
 def test_one_folder_knows_numba():
     for path in PACKAGE.rglob("*.py"):
         names = set()
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        for node in nodes(path):
             if isinstance(node, ast.Import):
                 names |= {each.name for each in node.names}
             elif isinstance(node, ast.ImportFrom):
