@@ -247,5 +247,5 @@ def test_thin_stones_that_are_drawn_far_away():
 
 
 def test_an_outline_that_is_flat_is_refused():
-    with pytest.raises(KeyProblem, match="needs sides that differ by less than 1 to 10000; found 100 by 0.001 m"):
+    with pytest.raises(KeyProblem, match=r"needs sides that differ by less than 1 to 10000; found 100 by 0\.001 m"):
         voronoi.cells_in(np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 1e-3]]), 4, RELAXED, draws(1))
