@@ -16,6 +16,7 @@ DEEPEST = 20  # levels of lists and tables
 CASE_BYTES = 50_000_000  # of a case file
 PIPE_SECONDS = 10.0  # s: silence of a pipe
 MOST_BLOCKS = 1_000_000
+MOST_TABLES = 10_000  # of one kind, such as [[load]]; blocks have a limit of their own
 MOST_STONES = 100_000  # drawn at random, of one structure
 MOST_CORNERS = 5_000  # of one outline, face or solid: shapes take memory by their square
 MOST_TOGETHER = 100  # blocks in the same place

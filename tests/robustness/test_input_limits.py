@@ -13,7 +13,14 @@ from studies.site.limits import LIMITS
 
 from dem_cli import input_limits
 from dem_cli.cli.main import main
-from dem_cli.input_limits import MOST_CORNERS, MOST_MISTAKES, MOST_TOGETHER, UnreadableInput, read_bounded
+from dem_cli.input_limits import (
+    MOST_CORNERS,
+    MOST_MISTAKES,
+    MOST_TABLES,
+    MOST_TOGETHER,
+    UnreadableInput,
+    read_bounded,
+)
 
 JOINT = "[materials.s]\ndensity = 2000.0\n[joints.d]\nfriction = 0.5\n"
 SPACE = f"dimension = 3\n{JOINT}"
@@ -21,6 +28,7 @@ COLUMN = f'{JOINT}[[structure]]\nkind = "column"\nblock = [0.5, 0.5]\ncourses = 
 SHAKEN = f'{COLUMN}[analysis]\nkind = "time-history"\n[motion]\ndirection = [1.0, 0.0]\n'
 RECORD = f'{SHAKEN}kind = "record"\nunit = "m/s2"\nfile = '
 IMPORT = '[[structure]]\nkind = "import"\nfile = '
+LOAD = "[[load]]\nat = [9.0, 9.0]\nforce = [1.0, 0.0]\n"
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:x="http://www.w3.org/1999/xlink">{}</svg>'
 AROUND = [(math.cos(k / MOST_CORNERS * 6.28), math.sin(k / MOST_CORNERS * 6.28)) for k in range(MOST_CORNERS + 1)]
 SQUARE = "vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]"
@@ -88,6 +96,8 @@ REFUSED = {
     "a table of two lines": (f'{COLUMN}[joints."a\\nb"]\nfriction = 0.5\n', r"joints: the name 'a\nb' is not allowed"),
     "a block that rings": (f'{SPACE}{IMPORT}"bell.obj"', r"the name 'a\x07' has control characters"),
     "frames": (f"{COLUMN}[output]\nframes = 1000000000", "output.frames: 1000000000 is not allowed"),
+    "loads": (COLUMN + "[[load]]\n" * (MOST_TABLES + 1), "load: 10,001 tables are too many; at most 10,000"),
+    "mistakes of what is built": (f"{COLUMN}{LOAD * 600}", "and 100 more mistakes"),
     "mistakes": (COLUMN + "".join(f"x{k} = 1\n" for k in range(600)), "and 100 more mistakes"),
     "a mass": (COLUMN.replace("2000.0", "5e-324"), "has a mass of"),
     "an arch far away": (
