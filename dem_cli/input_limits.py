@@ -20,6 +20,7 @@ MOST_TABLES = 10_000  # of one kind, such as [[load]]; blocks have a limit of th
 MOST_STONES = 100_000  # drawn at random, of one structure
 MOST_CORNERS = 5_000  # of one outline, face or solid: shapes take memory by their square
 MOST_DRAWN = 300  # corners of the elevation of a wall with its openings
+MOST_ELEMENTS = 10_000  # of a bar
 MOST_TOGETHER = 100  # blocks in the same place
 MOST_MISTAKES = 500  # told at once
 MOST_FRAMES = 1_000_000

@@ -94,7 +94,7 @@ def loads_of_start(model: Model, *asked: Any) -> tuple[LimitLoads, str | None]:
     found = limit_loads(model, *asked)
     if found.associated.status == FALLS and (closing := closing_gaps(model)) is not None:
         near, note = closing
-        closed = limit_loads(model, *asked, LimitSettings(touching=near))
+        closed = limit_loads(model, *asked, settings=LimitSettings(touching=near))
         if closed.associated.status != FALLS:
             return closed, note
     return found, gaps_left_open(model)

@@ -262,7 +262,7 @@ def _read_joints(arrays: StoredArrays, lazy: Path | None) -> JointHistory | None
     group = arrays.dem["joints"]
     if "state" not in group:  # of a run that was killed before its first frame
         return None
-    states = [
+    states: list[Any] = [
         arrays.array(f"/dem/joints/{name}") if lazy is None else LaterArray(arrays, f"/dem/joints/{name}", lazy)
         for name in JointStates._fields
     ]
