@@ -11,6 +11,7 @@ from dem_cli.arithmetic.products import product
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseProblem, KeyPath
 from dem_cli.geometry.parts import shapes_of
+from dem_cli.input_limits import MOST_ELEMENTS
 from dem_cli.links.drawn_bar import FINE, BarPiece, DrawnBar
 from dem_cli.model.model import Model
 from dem_cli.model.places import undeformed
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.links.drawn_bar import Reinforcement
 
+SLIPS = 1e-8  # stiffness of a bond to that of its bar, below which it is lost in round-off
 TOUCHES = 1e-9  # of the largest part: what a line has in a part is round-off
 
 
@@ -36,7 +38,11 @@ def drawn_bar(
     """The pieces of a bar in the blocks as they were drawn; None: something is wrong, which `problems` gets."""
     profile = case.bars[table.bar]
     element = FINE / profile.decay if table.element is None else table.element
-    corners, found = np.array(table.path, float), list[tuple[BarStretch, np.ndarray, np.ndarray]]()
+    corners = np.array(table.path, float)
+    if wrong := _unlike_bond(table.bar, profile.decay, element, corners):
+        problems.append(CaseProblem((*path, "bar"), wrong))
+        return None
+    found = list[tuple[BarStretch, np.ndarray, np.ndarray]]()
     upto = 0.0
     for i, (start, stop) in enumerate(zip(corners[:-1], corners[1:])):
         length = float(np.sqrt(((stop - start) ** 2).sum()))
@@ -57,6 +63,22 @@ def drawn_bar(
         ends = np.array([start + stretch.begin * along, start + stretch.end * along])
         pieces.append(BarPiece(stretch.block, ends - model.centroids[stretch.block]))
     return DrawnBar(profile, element, ("start" in table.anchored, "end" in table.anchored), tuple(pieces))
+
+
+def _unlike_bond(name: str, decay: float, element: float, corners: np.ndarray) -> str | None:
+    """What is wrong with a bar that is far stiffer or softer than its bond, or of elements that are far too short.
+
+    decay: of bond forces along the bar [1/m]; element: length of its elements [m]; corners: of its path [m], (n, d).
+    """
+    length = float(np.sqrt((np.diff(corners, axis=0) ** 2).sum(axis=1)).sum())
+    soft = (decay * length) ** 2  # stiffness of the bond of all of it, to its own
+    if soft < SLIPS:
+        return f"bar {show(name)} is {1.0 / soft:.3g} times as stiff as its bond; at most {1.0 / SLIPS:g} times"
+    if length > MOST_ELEMENTS * element:
+        return (
+            f"elements of {element:.3g} m are too short for a bar of {length:.4g} m; at most {MOST_ELEMENTS:,} are made"
+        )
+    return None
 
 
 def _in_blocks(model: Model, start: np.ndarray, along: np.ndarray, length: float) -> list[BarStretch]:

@@ -13,10 +13,11 @@ from dem_cli.errors import CaseError, CaseProblem, KeyPath
 from dem_cli.links.link import FIXED_POINT, Link, LinkEnds
 from dem_cli.links.registry import LINKS
 from dem_cli.model.model import Model
-from dem_cli.model.places import blocks_at, undeformed
+from dem_cli.model.places import blocks_at_all, undeformed
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
+    from dem_cli.links.drawn_bar import DrawnBar
 
 
 class DrawnLinks(NamedTuple):
@@ -36,7 +37,7 @@ def drawn_links(case: Case, model: Model) -> list[DrawnLinks]:
     found, problems = [], list[CaseProblem]()
     for key in LINKS:
         if tables := getattr(case, key):
-            drawn = [DRAWN[key](case, table, (key, i), model, problems) for i, table in enumerate(tables)]
+            drawn = DRAWN[key](case, tables, key, model, problems)
             found.append(DrawnLinks(LINKS[key], tables, [one for one in drawn if one is not None]))
     if problems:
         raise CaseError(problems)
@@ -50,13 +51,37 @@ def names_of(case: Case) -> tuple[str, ...]:
     )
 
 
-def _ends(case: Case, table: Any, path: KeyPath, model: Model, problems: list[CaseProblem]) -> LinkEnds | None:
-    """Blocks and points of one; None: something is wrong."""
-    points = np.array(table.ends, float)
-    first = _holding(model, (*path, "block"), table.block, points[0], (*path, "ends", 0), problems)
+def _ties(
+    case: Case, tables: Sequence[Any], key: str, model: Model, problems: list[CaseProblem]
+) -> list[LinkEnds | None]:
+    """Blocks and points of each; None: something is wrong."""
+    ends = np.array([table.ends for table in tables], float)  # (n, 2, d)
+    inside = blocks_at_all(model, ends.reshape(-1, model.dimension))
+    return [
+        _ends(table, (key, i), model, ends[i], inside[2 * i : 2 * i + 2], problems) for i, table in enumerate(tables)
+    ]
+
+
+def _bars(
+    case: Case, tables: Sequence[Any], key: str, model: Model, problems: list[CaseProblem]
+) -> list[DrawnBar | None]:
+    """The pieces of each; None: something is wrong."""
+    return [drawn_bar(case, table, (key, i), model, problems) for i, table in enumerate(tables)]
+
+
+def _ends(
+    table: Any,
+    path: KeyPath,
+    model: Model,
+    points: np.ndarray,
+    inside: Sequence[np.ndarray],
+    problems: list[CaseProblem],
+) -> LinkEnds | None:
+    """Blocks and points of a tie; None: something is wrong. inside: blocks in which its two ends lie."""
+    first = _holding(model, (*path, "block"), table.block, points[0], inside[0], (*path, "ends", 0), problems)
     second: int | None = FIXED_POINT
     if not table.anchored:
-        second = _holding(model, (*path, "other"), table.other, points[1], (*path, "ends", 1), problems)
+        second = _holding(model, (*path, "other"), table.other, points[1], inside[1], (*path, "ends", 1), problems)
     if first is None or second is None:
         return None
     message = None
@@ -74,10 +99,15 @@ def _ends(case: Case, table: Any, path: KeyPath, model: Model, problems: list[Ca
 
 
 def _holding(
-    model: Model, path: KeyPath, name: str | None, point: np.ndarray, at: KeyPath, problems: list[CaseProblem]
+    model: Model,
+    path: KeyPath,
+    name: str | None,
+    point: np.ndarray,
+    inside: np.ndarray,
+    at: KeyPath,
+    problems: list[CaseProblem],
 ) -> int | None:
     """Number of the block that holds an end: the one that is named, or the one in which it lies."""
-    inside = blocks_at(model, point)
     ids, where = model.block_ids, show(tuple(point.tolist()))
     message = None
     if name is not None and name not in model.numbers:
@@ -101,6 +131,6 @@ def _others(ids: Sequence[str], inside: np.ndarray) -> str:
     return f"; it lies in {listing([ids[i] for i in inside])}" if len(inside) else "; it lies in no block"
 
 
-DRAWN: dict[str, Callable[[Case, Any, KeyPath, Model, list[CaseProblem]], Any]] = {
-    "tie": _ends, "reinforcement": drawn_bar
+DRAWN: dict[str, Callable[[Case, Sequence[Any], str, Model, list[CaseProblem]], Sequence[Any]]] = {
+    "tie": _ties, "reinforcement": _bars
 }  # fmt: skip

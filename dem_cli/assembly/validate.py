@@ -109,7 +109,8 @@ def link_problems(case: Case, model: Model) -> list[CaseProblem]:
             found.append(CaseProblem(("monitor", i, "at"), message))
     paths = [(key, i, "id") for key in LINKS for i in range(len(getattr(case, key)))]
     names = model.link_names
-    twice = [(path, name) for k, (path, name) in enumerate(zip(paths, names)) if name in names[:k]]
+    first = {name: k for k, name in reversed([*enumerate(names)])}
+    twice = [(path, name) for k, (path, name) in enumerate(zip(paths, names)) if first[name] < k]
     return found + [CaseProblem(path, f"{show(name)} is used twice; give another") for path, name in twice]
 
 

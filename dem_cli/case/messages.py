@@ -79,6 +79,12 @@ def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str
     return [*found, CaseProblem((), f"and {rest:,} more mistakes")] if rest > 0 else found
 
 
+def foremost(found: Sequence[CaseProblem]) -> list[CaseProblem]:
+    """The mistakes that are told, and how many more there are."""
+    rest = len(found) - MOST_MISTAKES
+    return [*found[:MOST_MISTAKES], CaseProblem((), f"and {rest:,} more mistakes")] if rest > 0 else [*found]
+
+
 def first_of_list(found: Sequence[CaseProblem]) -> list[CaseProblem]:
     """Of vectors of one list that are of another dimension, the first says how many there are: all have one cause."""
     alike: dict[KeyPath, list[CaseProblem]] = {}

@@ -15,7 +15,7 @@ import tomli
 from pydantic import ValidationError
 
 from dem_cli.case import cross_references, dimensions, retired_keys
-from dem_cli.case.messages import problems_from
+from dem_cli.case.messages import foremost, problems_from
 from dem_cli.case.overrides import Override, apply, parse
 from dem_cli.case.plausibility import doubts
 from dem_cli.case.scanner import KeyPositions, impossible_values, parsed
@@ -78,7 +78,7 @@ class CaseSource:
         try:
             yield
         except CaseError as error:
-            raise CaseError(error.problems, self.render) from None
+            raise CaseError(foremost(error.problems), self.render) from None
 
     def render(self, problem: CaseProblem) -> str:
         """`case.toml:8:1: joints.dry.frcition: unknown key, did you mean 'friction'?`"""

@@ -35,7 +35,7 @@ from dem_cli.case.load_tables import Fill, GroundTable, Load, Pressure, Restrain
 from dem_cli.case.reference import Reference
 from dem_cli.case.selection import GroupMembers, Selection
 from dem_cli.case.sweep import Sweep
-from dem_cli.input_limits import MOST_FRAMES
+from dem_cli.input_limits import MOST_FRAMES, MOST_TABLES
 
 
 class Material(CaseModel):
@@ -335,6 +335,15 @@ class Case(CaseModel):
     def __eq__(self, other: object) -> bool:
         """Whether they say the same, whichever kinds their classes know (`case_model`)."""
         return isinstance(other, Case) and dict(self) == dict(other)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _not_without_end(cls, tables: Any) -> Any:
+        """Before any of them is looked at."""
+        for key, several in tables.items() if isinstance(tables, dict) else ():
+            if key != "block" and isinstance(several, (list, tuple, dict)) and len(several) > MOST_TABLES:
+                raise KeyProblem(f"{len(several):,} tables are too many; at most {MOST_TABLES:,}", key)
+        return tables
 
     @model_validator(mode="after")
     def _references_know_the_resolution(self) -> Case:

@@ -56,7 +56,7 @@ def command(
     """Failure load of CASE by limit analysis of its rigid blocks, as they stand at the start, and bounds of it."""
     from dem_cli import api
     from dem_cli.engine.properties import joint_properties, law_of
-    from dem_cli.limit.analysis import LEAST, LOWER, gaps_left_open, limit_loads, require_scalable, taken_as_plane
+    from dem_cli.limit.analysis import LEAST, LOWER, require_scalable, taken_as_plane
     from dem_cli.output.summary import to_json
 
     started = time.perf_counter()
@@ -68,19 +68,36 @@ def command(
         require_scalable(model, properties, law)
     if note := taken_as_plane(properties):
         loaded.warnings.append(note)
-    if note := gaps_left_open(model):
-        loaded.warnings.append(note)
     bounds = [name for name, wanted in ((LOWER, lower), (LEAST, least)) if wanted]
     with console.Progress(quiet) as bar:
-        found = limit_loads(
+        found, note = loads_of_start(
             model, properties, law, heads == "frictionless", associated_only, bounds,
             lambda load, reached: bar.update("no dilation", load, 0.0, None),
         )  # fmt: skip
+    loaded.warnings += [note] if note else []
     summary = summarised(loaded, model, found, heads) | {"wall_seconds": time.perf_counter() - started}
     if output is not None:
         write(loaded, model, found, summary, output, force)
     console.show(to_json(summary).rstrip() if as_json else console.limit_answer(summary, output))
     return code(summary, loaded)
+
+
+def loads_of_start(model: Model, *asked: Any) -> tuple[LimitLoads, str | None]:
+    """Limit analysis as `limit_loads` is asked for it, and what is to be said of gaps of the start.
+
+    They stay open, unless nothing carries the dead loads then: those that close like joints are taken as closed.
+    """
+    from dem_cli.limit.analysis import closing_gaps, gaps_left_open, limit_loads
+    from dem_cli.limit.associated import FALLS
+    from dem_cli.limit.settings import LimitSettings
+
+    found = limit_loads(model, *asked)
+    if found.associated.status == FALLS and (closing := closing_gaps(model)) is not None:
+        near, note = closing
+        closed = limit_loads(model, *asked, settings=LimitSettings(touching=near))
+        if closed.associated.status != FALLS:
+            return closed, note
+    return found, gaps_left_open(model)
 
 
 def code(summary: dict[str, Any], loaded: LoadedCase) -> int:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dem_cli.errors import DemError, OutputError, printable
+from dem_cli.errors import DemError, OutputError, UsageError, printable
 from dem_cli.interrupts import Interrupts, asked
 from dem_cli.late_modules import start_lightly
 from dem_cli.version import __version__
@@ -63,6 +63,7 @@ def _leave() -> None:
 
 atexit.register(_leave)  # before others do, so that it comes after them
 
+LONGEST_NAME = 60  # letters of a name that is too long, in a message
 UNPRINTED = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # why a file or device takes no more of what we print
 INTERRUPTED_CODE = 130  # what a shell reports for a program ended by Ctrl-C
 
@@ -132,6 +133,8 @@ class LazyGroup(click.Group):
                 return interrupted()  # what a library made of it while it was imported
             if isinstance(error, OSError) and error.filename is None and error.errno in UNPRINTED:
                 return unprinted(error)
+            if isinstance(error, OSError) and error.errno in (errno.ENAMETOOLONG, errno.ELOOP):
+                return unopened(error)
             from dem_cli.cli import internal_error  # a fault of the program
 
             code = internal_error.report(error, internal_error.command_line(args[0] if args else options.get("args")))
@@ -149,6 +152,14 @@ def unprinted(error: OSError) -> int:
     click.echo(f"error: cannot print to the standard output: {os.strerror(error.errno or 0).lower()}", err=True)
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return OutputError.exit_code
+
+
+def unopened(error: OSError) -> int:
+    """The end where a name of a file or folder is none that the system takes, whoever meets it first."""
+    name = printable(os.fsdecode(error.filename or ""))
+    short = name if len(name) <= LONGEST_NAME else f"{name[:LONGEST_NAME]}..."
+    click.echo(f"error: {short}: {os.strerror(error.errno or 0).lower()}", err=True)
+    return UsageError.exit_code
 
 
 def unknown_command(name: str) -> str:

@@ -58,6 +58,7 @@ def command(
     fps: float | None,
 ) -> None:
     """Render the results in DIR: a picture of one frame, or a movie of all."""
+    from dem_cli.output.atomic_file import require_file
     from dem_cli.output.folder import write_error
     from dem_cli.output.reader import read
     from dem_cli.post.scene.axonometry import Standpoint
@@ -69,6 +70,7 @@ def command(
     read(folder)  # what is wrong with the results is said before anything is started
     look = RenderOptions(frame, Standpoint(view, azimuth, elevation), scale, colour, joints, forces, size, fps)
     try:
+        require_file(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         render_apart(folder, path, look)
     except OSError as error:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from dem_cli.limit.reduced import LowerBound
 
 Progress = Callable[[float, float], None]
+ROUNDED = 1e-9  # of the widest gap that closes: round-off of where it is measured again
 LOWER, LEAST = "lower", "least"  # bounds of joints that do not dilate, which are found where they are asked for
 BOUNDED = (2,)  # dimensions in which these are known
 SETTLED = (2,)  # dimensions in which LOCKED leaves no question: out of plane joints may lock because they dilate
@@ -114,7 +115,8 @@ def limit_loads(
     """
     begun = time.perf_counter()
     _require_known(model, bounds)
-    structure = start_structure(model, properties, law)
+    near = TOUCHING_GAP if settings.touching is None else settings.touching
+    structure = start_structure(model, properties, law, near=near)
     strength = envelope_of(structure.joints, law, heads_frictionless, bonds=structure.bonds)
     associated = limit_load(structure, strength, settings.associated)
     found = LimitLoads(structure, strength.friction, associated, None, time.perf_counter() - begun, None)
@@ -222,6 +224,19 @@ def gaps_left_open(model: Model) -> str | None:
     """What is to be said of gaps of the start, which rigid blocks at rest do not close; None: there are none."""
     gaps = gaps_of_start(model)
     return f"limit analysis closes no gaps: {gap_words(model, gaps)}" if len(gaps.widths) else None
+
+
+def closing_gaps(model: Model) -> tuple[float, str] | None:
+    """Up to which share of the smallest edge gaps close like joints [-], and what is to be said of it; None: none do.
+
+    For structures that nothing carries while they are open, such as tiers drawn one above the other to a few digits.
+    """
+    gaps = gaps_of_start(model)
+    gaps = gaps.where(gaps.close & (gaps.widths > 0.0))
+    if not len(gaps.widths):
+        return None
+    near = float(gaps.widths.max()) / smallest_edge(model) * (1.0 + ROUNDED)
+    return near, f"limit analysis takes as closed {gap_words(model, gaps)}: open, they leave dead loads without support"
 
 
 def start_structure(

@@ -178,6 +178,7 @@ class LimitSettings:
     associated: AssociatedSettings = AssociatedSettings()
     reduced: ReducedSettings = ReducedSettings()
     least: LeastSettings = LeastSettings()
+    touching: float | None = None  # gap or overlap of faces that touch, in smallest edges; None: as in every analysis
 
     def longest_path(self, dimension: int) -> int:
         """Factorisations of a path in 2D or 3D."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from dem_cli.geometry.parts import shapes_of
@@ -21,18 +23,29 @@ def block_at(model: Model, point: np.ndarray) -> int | None:
 
 def blocks_at(model: Model, point: np.ndarray) -> np.ndarray:
     """Numbers of all blocks that contain a point of the undeformed structure (edges count), each once, ascending."""
-    vertices, topology = undeformed(model), model.topology
-    depths = ((vertices[_on_faces(model)] - point) * _normals(model, vertices)).sum(axis=1)
-    inside = np.minimum.reduceat(depths, topology.part_faces[:-1]) >= -_slack(model)
-    return np.unique(model.part_blocks[np.flatnonzero(inside)])
+    return blocks_at_all(model, np.array([point]))[0]
+
+
+def blocks_at_all(model: Model, points: np.ndarray) -> list[np.ndarray]:
+    """The same of many points (n, d), one after the other."""
+    inside: list[list[int]] = [[] for _ in points]
+    for part, found in _points_in_parts(model, points):
+        for point in found.tolist():
+            inside[point].append(part)
+    return [np.unique(model.part_blocks[np.array(parts, np.int64)]) for parts in inside]
 
 
 def inside_blocks(model: Model, points: np.ndarray) -> np.ndarray:
-    """Which of many points (n, d) lie in a block of the undeformed structure, as `block_at` has it, (n,) bool.
+    """Which of many points (n, d) lie in a block of the undeformed structure, as `block_at` has it, (n,) bool."""
+    found = np.zeros(len(points), bool)
+    for _, inside in _points_in_parts(model, points):
+        found[inside] = True
+    return found
 
-    Parts are compared with points within their width alone.
-    """
-    vertices, first_faces, found = undeformed(model), model.topology.part_faces, np.zeros(len(points), bool)
+
+def _points_in_parts(model: Model, points: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
+    """Parts with points inside, and which of many (n, d) these are; compared are those within their width alone."""
+    vertices, first_faces = undeformed(model), model.topology.part_faces
     normals, on_faces = _normals(model, vertices), vertices[_on_faces(model)]
     slack, order = _slack(model), np.argsort(points[:, 0], kind="stable")
     sorted_points, room = points[order], 1e3 * slack  # room: a sharp corner reaches further than its faces
@@ -45,8 +58,7 @@ def inside_blocks(model: Model, points: np.ndarray) -> np.ndarray:
         in_box = np.flatnonzero(((low[part] <= near) & (near <= high[part])).all(axis=1))
         own = slice(first_faces[part], first_faces[part + 1])
         depths = ((on_faces[own] - near[in_box, None]) * normals[own]).sum(axis=2)
-        found[order[begins[part] + in_box[depths.min(axis=1) >= -slack]]] = True
-    return found
+        yield int(part), order[begins[part] + in_box[depths.min(axis=1) >= -slack]]
 
 
 def _on_faces(model: Model) -> np.ndarray:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.input_limits import LARGEST, LONGEST, MOST_SAMPLES
+from dem_cli.input_limits import LARGEST, LONGEST, LONGEST_LINE, MOST_SAMPLES
 from dem_cli.motion.record_text import RecordError, apart, by_width, is_number, number, read_text
 from dem_cli.motion.units import SI_FACTORS
 
@@ -51,6 +51,11 @@ def read_series(
     uneven  steps that differ are meant: no gaps are looked for
     """
     lines = read_text(path).splitlines()
+    for at, line in enumerate(lines, 1):
+        if len(line) > LONGEST_LINE:
+            raise RecordError(
+                f"{path.name}:{at}: {len(line):,} characters in a line; at most {LONGEST_LINE:,} are read"
+            )
     if any(PEER_COUNT.search(line) or PEER_OLD.search(line) for line in lines[:8]):
         return _peer(path.name, lines)
     rows, numbers = _rows(path.name, lines, along=column == ALONG)

@@ -16,7 +16,7 @@ from dem_cli.errors import DamagedResults, UsageError
 from dem_cli.input_limits import SUMMARY_BYTES, UnreadableInput, read_bounded
 from dem_cli.model.model import Model
 from dem_cli.output.folder import SUMMARY, require_folder
-from dem_cli.output.integrity.stored_arrays import LaterArray, StoredArrays, check_size
+from dem_cli.output.integrity.stored_arrays import LaterArray, StoredArrays, check_size, of_hdf5
 from dem_cli.output.layout import FRAMES, MODEL, NAMES, RESULTS_FORMAT, ROW_SCALARS, declared, units_of
 from dem_cli.output.record import (
     FRAME_ARRAYS,
@@ -143,7 +143,9 @@ def read(folder: Path | str, *, lazy: bool = False) -> Results:
             return replace(_read(_arrays(file, folder), summary, folder), source=stack.pop_all())
     except DamagedResults as error:
         raise DamagedResults(error.damage, folder) from None
-    except (OSError, RuntimeError) as error:  # of HDF5, on bytes that are not its own
+    except Exception as error:
+        if not of_hdf5(error):
+            raise
         raise DamagedResults(f"{RESULTS} cannot be read ({_reason(error)})", folder) from None
 
 
@@ -218,7 +220,7 @@ def _read(arrays: StoredArrays, summary: dict[str, Any], lazy: Path | None) -> R
         status=str(dem.attrs["status"]),
         kind=str(dem.attrs["kind"]),
         series=read_series(dem["series"], model.dimension) if "series" in dem else None,
-        joints=_read_joints(arrays, lazy is not None) if "joints" in dem else None,
+        joints=_read_joints(arrays, lazy) if "joints" in dem else None,
     )
     _check_agreement(found)
     return found
@@ -256,12 +258,12 @@ def _read_frames(arrays: StoredArrays, lazy: Path | None) -> Frames:
     return Frames(columns, contacts, links)
 
 
-def _read_joints(arrays: StoredArrays, lazy: bool) -> JointHistory | None:
+def _read_joints(arrays: StoredArrays, lazy: Path | None) -> JointHistory | None:
     group = arrays.dem["joints"]
     if "state" not in group:  # of a run that was killed before its first frame
         return None
-    states = [
-        arrays.dataset(f"/dem/joints/{name}") if lazy else arrays.array(f"/dem/joints/{name}")
+    states: list[Any] = [
+        arrays.array(f"/dem/joints/{name}") if lazy is None else LaterArray(arrays, f"/dem/joints/{name}", lazy)
         for name in JointStates._fields
     ]
     places = {name: arrays.array(f"/dem/joints/{name}") for name in JointPlaces._fields if name in group}

@@ -10,6 +10,7 @@ import os
 import re
 import signal
 import tempfile
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -65,7 +66,7 @@ def render_apart(folder: Path, path: Path, look: RenderOptions) -> None:
 
 
 def in_own_process(work: Callable[..., object], *arguments: object) -> None:
-    """Do `work` where it can die alone. Raises its DemError or OSError, and OutputError where it dies."""
+    """Do `work` where it can die alone. Raises what it raises, and OutputError where the process dies of graphics."""
     context = multiprocessing.get_context("spawn")
     receiver, sender = context.Pipe(duplex=False)
     with tempfile.NamedTemporaryFile() as log, receiver:
@@ -92,8 +93,13 @@ def _work_alone(sender: Connection, log: str, work: Callable[..., object], argum
     error: Exception | None = None
     try:
         work(*arguments)
-    except (DemError, OSError) as found:
+    except (DemError, OSError, MemoryError) as found:
         error = found
+    except ImportError:  # of a graphics library
+        raise
+    except Exception as found:  # a fault of the program, for which no driver is to blame
+        error = RuntimeError(f"{type(found).__name__}: {found}")
+        error.add_note(traceback.format_exc())
     sender.send(error)
 
 

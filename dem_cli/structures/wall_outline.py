@@ -15,6 +15,7 @@ from dem_cli.case.named_file import absolute_path, is_file, missing_file
 from dem_cli.geometry import pockets, polygon
 from dem_cli.imports.contents import UNITS, Contents, FileBody, FileProblem, unit_of
 from dem_cli.imports.formats import FORMATS, format_of, read
+from dem_cli.input_limits import MOST_DRAWN
 from dem_cli.structures.openings import Lintel, Opening
 from dem_cli.structures.voids import Void, overlap, plain_void
 
@@ -263,6 +264,9 @@ def _elevation(loops: Sequence[tuple[str, np.ndarray]], keys: tuple[str, str]) -
     """The elevation with that outline, the first, and those openings. Raises KeyProblem, with the key of either."""
     from dem_cli.imports.solids import closed_outline
 
+    count = sum(len(loop) for _, loop in loops)
+    if count > MOST_DRAWN:
+        raise KeyProblem(f"{count:,} corners with those of the openings are too many; at most {MOST_DRAWN}", keys[0])
     closed = []
     for k, (said, loop) in enumerate(loops):
         try:

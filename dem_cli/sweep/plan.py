@@ -72,7 +72,7 @@ def plan_of(table: Sweep, seed: int) -> SweepPlan:
     if not axes and not samples and not table.run:
         message = "nothing to be changed: give it keys of the case, with their values"
         raise CaseError([CaseProblem(("sweep",), message, at_key=True)])
-    _check_number(max(len(table.run), 1), axes, table.zip, table.samples or 1)
+    _check_number(table, [len(values) for values in axes.values()])
     drawn_points = _drawn_points(samples, table.samples, seed)
     runs = []
     for row in [_row(table, number, row) for number, row in enumerate(table.run)] or [()]:
@@ -94,10 +94,10 @@ def show_value(value: Any) -> str:
 Axes = dict[str, list[KeyChange]]
 
 
-def _check_number(rows: int, axes: Axes, side_by_side: bool, points: int) -> None:
-    """Raises CaseError where there would be too many runs."""
-    lengths = [len(values) for values in axes.values()] or [1]
-    count = rows * points * (max(lengths) if side_by_side else prod(lengths))
+def _check_number(table: Sweep, lengths: Sequence[int]) -> None:
+    """Raises CaseError where there would be too many runs. lengths: of the lists of values."""
+    several = max(lengths, default=1) if table.zip else prod(lengths)
+    count = max(len(table.run), 1) * (table.samples or 1) * several
     if count > MOST_RUNS:
         raise _wrong(("sweep",), f"asks for {count:,} runs; at most {MOST_RUNS:,}")
 
@@ -122,9 +122,10 @@ def _axes(table: Sweep) -> tuple[Axes, dict[str, tuple[KeyPath, Mapping[str, Any
     """Values of the keys of the grid, and the distributions of those that are drawn."""
     axes: Axes = {}
     samples = {}
+    found: dict[str, tuple[KeyPath, bool, Sequence[Any]]] = {}
     for path, form in _leaves(("sweep",), table.model_extra or {}):
         key = dotted(path[1:]) if len(path) > 2 else str(path[1])
-        if key in axes or key in samples:
+        if key in found or key in samples:
             raise _wrong(path, f"{key} has its values already, further up")
         if isinstance(form, Mapping) and form.keys() & QUANTILES.keys():
             samples[key] = (path, form)
@@ -135,7 +136,9 @@ def _axes(table: Sweep) -> tuple[Axes, dict[str, tuple[KeyPath, Mapping[str, Any
                                f"one of {listing(QUANTILES)} with its two numbers")  # fmt: skip
         if not values:
             raise _wrong(path, "an empty list leaves nothing to run")
-        listed = not isinstance(form, Mapping)
+        found[key] = path, not isinstance(form, Mapping), values
+    _check_number(table, [len(values) for _, _, values in found.values()])  # before a change is made for each
+    for key, (path, listed, values) in found.items():
         axes[key] = [_change(table, key, value, (*path, i) if listed else path) for i, value in enumerate(values)]
     if samples and table.samples is None:
         key, (path, _) = next(iter(samples.items()))

@@ -119,6 +119,19 @@ def inflated(folder: Path) -> None:
         file.create_dataset("dem/model/masses", (10**11,), "f8", chunks=(10**6,), compression="gzip")
 
 
+def overwritten(path: str):
+    """Damage: the bytes of the header of a dataset are zeros; HDF5 still has its name."""
+
+    def damage(folder: Path) -> None:
+        with h5py.File(folder / "results.h5") as file:
+            place = h5py.h5o.get_info(file[path].id).addr
+        raw = bytearray((folder / "results.h5").read_bytes())
+        raw[place : place + 8] = bytes(8)
+        (folder / "results.h5").write_bytes(bytes(raw))
+
+    return damage
+
+
 DAMAGES = {
     "positions are gone": ("plane", edited("dem/frames/positions", None), "/dem/frames/positions is missing"),
     "counts are gone": ("plane", edited("dem/frames/n_contacts", None), "/dem/frames/n_contacts is missing"),
@@ -142,6 +155,8 @@ DAMAGES = {
     "monitors of no quantity": ("shaken", attribute("dem/series", "quantities", ["x", "y"]), "/dem/series: the attr"),
     "stored elsewhere": ("plane", elsewhere, "/dem/frames/positions is a link to something else"),
     "a terabyte": ("plane", inflated, "it would take 800 GB to read a file of"),
+    "a header is gone": ("plane", overwritten("dem/model/masses"), "results.h5 cannot be read ("),
+    "the header of joints is gone": ("space", overwritten("dem/joints/state"), "results.h5 cannot be read ("),
     "half a file": ("plane", cut(0.5), "results.h5 is not a whole file of HDF5"),
     "an empty file": ("space", cut(0.0), "results.h5 is not a whole file of HDF5"),
     "half a summary": ("plane", cut(0.5, "summary.json"), "summary.json is not valid JSON"),

@@ -238,3 +238,37 @@ def test_tables_that_tilt_joints_with_strength_are_refused():
     assert [line.split(":")[0] for line in summary["warnings"]] == ["no limit analysis"]
     wall = dem("limit", WALL, "--associated-only", "--set", "analysis.pattern=tilt", "--json")
     assert json.loads(wall.stdout)["limit_analysis"]["associated"] == pytest.approx(0.6812, abs=1e-4)
+
+
+TIERS = """
+[materials.stone]
+density = 2000.0
+[joints.dry]
+friction = 0.3
+[[structure]]
+kind = "column"
+id = "lower"
+block = [1.0, 0.5]
+courses = 2
+[[structure]]
+kind = "column"
+id = "upper"
+block = [1.0, 0.5]
+courses = 1
+base = false
+origin = [0.0, HEIGHT]
+[analysis]
+kind = "pushover"
+"""
+
+
+def test_a_tier_drawn_to_a_few_digits_rests_on_the_one_below(tmp_path):
+    """A gap of 2.5 µm: such structures "did not stand". The upper block slides at its friction."""
+    case = tmp_path / "tiers.toml"
+    case.write_text(TIERS.replace("HEIGHT", "1.0000025"), encoding="utf-8")
+    answer = dem("limit", case, "--json", "-o", tmp_path / "out")
+    said = json.loads(answer.stdout)
+    assert answer.exit_code == 0
+    assert said["limit_analysis"]["associated"] == pytest.approx(0.3, rel=1e-6)
+    assert "takes as closed a gap of 2.5e-06 m between 'lower-2' and 'upper-1'" in " ".join(said["warnings"])
+    assert read(tmp_path / "out").summary["status"] == "ok"

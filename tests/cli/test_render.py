@@ -242,6 +242,12 @@ def test_errors_come_back_from_the_other_process(tmp_path):
         render.in_own_process(os.listdir, tmp_path / "nowhere")
 
 
+def test_a_fault_of_the_program_is_not_blamed_on_drivers():
+    with pytest.raises(RuntimeError, match="ValueError: could not convert") as caught:
+        render.in_own_process(float, "x")
+    assert any("in _work_alone" in note for note in caught.value.__notes__)
+
+
 def test_the_reason_is_the_last_that_was_said():
     said = "\x1b[31m2026 ( 0.7s) [ 7F] vtkOSOpenGL:150  WARN| no library of that name\x1b[0m\n\n"
     assert "no library of that name" in render._death(said)

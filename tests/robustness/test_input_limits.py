@@ -10,10 +10,18 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from studies.site.limits import LIMITS
+from synthetic.pages import wall
 
 from dem_cli import input_limits
 from dem_cli.cli.main import main
-from dem_cli.input_limits import MOST_CORNERS, MOST_MISTAKES, MOST_TOGETHER, UnreadableInput, read_bounded
+from dem_cli.input_limits import (
+    MOST_CORNERS,
+    MOST_MISTAKES,
+    MOST_TABLES,
+    MOST_TOGETHER,
+    UnreadableInput,
+    read_bounded,
+)
 
 JOINT = "[materials.s]\ndensity = 2000.0\n[joints.d]\nfriction = 0.5\n"
 SPACE = f"dimension = 3\n{JOINT}"
@@ -21,6 +29,7 @@ COLUMN = f'{JOINT}[[structure]]\nkind = "column"\nblock = [0.5, 0.5]\ncourses = 
 SHAKEN = f'{COLUMN}[analysis]\nkind = "time-history"\n[motion]\ndirection = [1.0, 0.0]\n'
 RECORD = f'{SHAKEN}kind = "record"\nunit = "m/s2"\nfile = '
 IMPORT = '[[structure]]\nkind = "import"\nfile = '
+LOAD = "[[load]]\nat = [9.0, 9.0]\nforce = [1.0, 0.0]\n"
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:x="http://www.w3.org/1999/xlink">{}</svg>'
 AROUND = [(math.cos(k / MOST_CORNERS * 6.28), math.sin(k / MOST_CORNERS * 6.28)) for k in range(MOST_CORNERS + 1)]
 SQUARE = "vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]"
@@ -44,6 +53,7 @@ FILES = {
     "times.csv": "0,0\n1e-300,1\n1e300,1\n",
     "steps.csv": "0,0\n1e-9,1\n1000,1\n",
     "values.csv": "0,0\n0.01,1e300\n0.02,0\n",
+    "line.csv": "0,0\n" + "0," * 500_001 + "\n",
     "around.svg": SVG.format(f'<polygon points="{" ".join(f"{x:.9g},{y:.9g}" for x, y in AROUND)}"/>'),
     "itself.svg": SVG.format('<g id="a"><rect width="1" height="1"/><use x:href="#a"/></g>'),
     "repeated.svg": repeated(8),
@@ -60,6 +70,12 @@ REFUSED = {
     "a duration": (SHAKEN.replace("[motion]", "duration = 1e29\n[motion]"), "analysis.duration: 1e+29 is not allowed"),
     "a slow pulse": (f'{SHAKEN}kind = "pulse"\namplitude = 1.0\nfrequency = 1e-9', "lasts 1e+09 s; at most 1e+07 s"),
     "corners of an outline": (f'{JOINT}{IMPORT}"around.svg"', "5,001 corners; outlines, faces and solids have at most"),
+    "corners of a wall": (
+        f"{JOINT}[[structure]]\nkind = 'wall'\nblock = [0.5, 0.2]\n"
+        f"outline = {{ points = {list(map(list, AROUND[:301]))} }}",
+        "outline.points: 301 corners with those of the openings are too many; at most 300",
+    ),
+    "a line of a record": (f'{RECORD}"line.csv"', "line.csv:2: 1,000,002 characters in a line; at most 1,000,000"),
     "corners of a face": (f'{SPACE}{IMPORT}"face.obj"', "a face has 15,000 corners"),
     "corners of a block": (f"{JOINT}[[block]]\nid = 'b'\nvertices = {list(map(list, AROUND))}", "at most 5,000 lists"),
     "a drawing in itself": (f'{JOINT}{IMPORT}"itself.svg"', "'#a' refers to itself"),
@@ -88,6 +104,8 @@ REFUSED = {
     "a table of two lines": (f'{COLUMN}[joints."a\\nb"]\nfriction = 0.5\n', r"joints: the name 'a\nb' is not allowed"),
     "a block that rings": (f'{SPACE}{IMPORT}"bell.obj"', r"the name 'a\x07' has control characters"),
     "frames": (f"{COLUMN}[output]\nframes = 1000000000", "output.frames: 1000000000 is not allowed"),
+    "loads": (COLUMN + "[[load]]\n" * (MOST_TABLES + 1), "load: 10,001 tables are too many; at most 10,000"),
+    "mistakes of what is built": (f"{COLUMN}{LOAD * 600}", "and 100 more mistakes"),
     "mistakes": (COLUMN + "".join(f"x{k} = 1\n" for k in range(600)), "and 100 more mistakes"),
     "a mass": (COLUMN.replace("2000.0", "5e-324"), "has a mass of"),
     "an arch far away": (
@@ -178,3 +196,35 @@ def test_a_terminal_obeys_nothing_that_others_wrote(tmp_path):
     for name, shown in (("a\x1b[31m.toml", r"a\x1b[31m.toml"), ("a\udcff.toml", r"a\udcff.toml")):
         done = CliRunner().invoke(main, ["check", str(tmp_path / name)])
         assert (done.exit_code, shown in done.output) == (2, True), done.output
+
+
+OUTPUTS = {
+    "report": (("report", "RESULTS"), ".html"),
+    "build": (("build", "CASE"), ".obj"),
+    "pvd": (("export", "RESULTS", "--pvd"), ""),
+    "limit": (("limit", "CASE", "-q"), ""),
+    "run": (("run", "CASE", "-q"), ""),
+}
+
+
+@pytest.mark.parametrize("name", OUTPUTS)
+def test_names_of_output_that_no_file_can_have(tmp_path, name):
+    """Too long, through a file, of a pipe: all were faults of the program, or the pipe was replaced."""
+    words, suffix = OUTPUTS[name]
+    (tmp_path / "case.toml").write_text(COLUMN, encoding="utf-8")
+    wall(tmp_path / "results")
+    os.mkfifo(tmp_path / f"pipe{suffix}")
+    words = [
+        {"RESULTS": str(tmp_path / "results"), "CASE": str(tmp_path / "case.toml")}.get(word, word) for word in words
+    ]
+    for output, says in (
+        ("a" * 300 + suffix, "too long"),
+        ("b/" * 3000 + "c" + suffix, "too long"),
+        (f"case.toml/c{suffix}", "a part of the path is a file"),
+        (f"pipe{suffix}", "a pipe" if suffix else "a"),
+    ):
+        done = CliRunner().invoke(main, [*words, "-o", str(tmp_path / output)])
+        assert done.exit_code in (2, 3), (output[:20], done.output)
+        assert says in done.output
+        assert "internal error" not in done.output
+        assert (tmp_path / f"pipe{suffix}").is_fifo()

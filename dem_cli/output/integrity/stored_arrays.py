@@ -150,10 +150,20 @@ class LaterArray:
         """Raises DamagedResults."""
         try:
             return self._arrays.checked(self._path, self._data[rows])
-        except (OSError, RuntimeError) as error:
-            raise DamagedResults(f"{self._path} cannot be read ({_reason(error)})", self._folder) from None
         except DamagedResults as error:
             raise DamagedResults(error.damage, self._folder) from None
+        except Exception as error:
+            if not of_hdf5(error):
+                raise
+            raise DamagedResults(f"{self._path} cannot be read ({_reason(error)})", self._folder) from None
+
+
+def of_hdf5(error: Exception) -> bool:
+    """Whether HDF5 raised it, which says of bytes that are not its own what comes: KeyError, OSError, ValueError, …"""
+    trace, module = error.__traceback__, ""
+    while trace is not None:
+        module, trace = trace.tb_frame.f_globals.get("__name__", ""), trace.tb_next
+    return isinstance(error, (OSError, RuntimeError)) or module.split(".")[0] == "h5py"
 
 
 def check_size(file: h5py.File, path: Path) -> None:

@@ -14,6 +14,8 @@ from dem_cli.structures.patterns.short_edges import collapsed, sides_of
 from dem_cli.structures.patterns.tiling import SAME, Tiling
 
 FEWEST_CELLS = 2
+FLATTEST = 1e-4  # of the longer side of an outline: cells of flatter ones are lost in round-off
+FAR = 10.0  # times the size of an outline: from the origin, where areas and Qhull lose digits
 
 
 class VoronoiPattern(CaseModel):
@@ -77,8 +79,12 @@ def stones_in(panel: WallPanel, pattern: VoronoiPattern, draws: np.random.Genera
 
 def cells_in(outline: np.ndarray, count: int, pattern: VoronoiPattern, draws: np.random.Generator) -> Tiling:
     """Voronoi cells of `count` random seeds that fill a convex outline (n, 2) exactly."""
+    low, (long, high) = outline.min(axis=0), np.ptp(outline, axis=0)
+    if min(long, high) < FLATTEST * max(long, high):
+        raise KeyProblem(f"needs sides that differ by less than 1 to {1 / FLATTEST:g}; found {long:g} by {high:g} m")
+    origin = np.where(np.abs(low).max() > FAR * max(long, high), low, 0.0)
     scale = np.array([pattern.stretch**0.5, pattern.stretch**-0.5])
-    flat = outline / scale  # where stones are as long as high
+    flat = (outline - origin) / scale  # where stones are as long as high
     seeds = _seeds(flat, count, draws)
     for _ in range(pattern.relax):
         cells = _voronoi(flat, seeds)
@@ -87,7 +93,7 @@ def cells_in(outline: np.ndarray, count: int, pattern: VoronoiPattern, draws: np
     cells = _voronoi(flat, seeds)
     side = (polygon.area(flat) / count) ** 0.5
     cells = collapsed(cells, pattern.shortest * side, sides_of([flat]))
-    return Tiling(_on_outline(cells.corners * scale, outline), cells.stones, cells.courses)
+    return Tiling(_on_outline(cells.corners * scale + origin, outline), cells.stones, cells.courses)
 
 
 def _seeds(outline: np.ndarray, count: int, draws: np.random.Generator) -> np.ndarray:

@@ -111,6 +111,11 @@ def test_wrong_paths(name):
 
 WRONG_CASES = {
     "unknown bar": ({"reinforcement": [{"bar": "rope", "path": [[0.5, 1.5], [0.5, 0.5]]}]}, "unknown bar 'rope'"),
+    "stiffer than its bond": (
+        {"bars": {"rod": ROD["rod"] | {"area": 1e30}}},
+        "times as stiff as its bond; at most 1e+08",
+    ),
+    "endless elements": ({"bars": {"rod": ROD["rod"] | {"bond_stiffness": 1e29}}}, "at most 10,000 are made"),
     "no place": ({"monitor": [{"bar": "bar-1", "quantity": "force"}]}, "monitor.0.at: missing"),
     "no bar": ({"monitor": [{"block": "a", "at": 0.1}]}, "not used without bar"),
     "quantity": ({"monitor": [{"bar": "bar-1", "at": 0.1, "quantity": "opening"}]}, "'force', 'slip'"),

@@ -23,6 +23,7 @@ PLAIN = rectangular(20.0, 10.0)
 GABLE = WallPanel(np.array([[0.0, 0.0], [6.0, 0.0], [6.0, 3.0], [2.5, 4.5], [0.0, 3.0]]), PLAIN.holes)
 PAPER = {"spacing": (1.0, 0.1), "segment": (2.0, 1.0), "deviation": (0.0, 0.2), "head_spacing": (1.5, 0.5)}
 
+RELAXED = voronoi.VoronoiPattern(cells=4, relax=100)
 LEANING = {"spacing": (0.5, 0.1), "deviation": (0.0, 0.05), "head_angle_deg": (4.0, 5.0)}
 
 
@@ -232,3 +233,19 @@ def test_a_stone_around_a_hole_falls_apart():
     found = rubble(panel, 1, cells=2)
     assert len(found.stones) > len(tiling.stones)
     assert sum(shape.area for shape in shapes(found)) == pytest.approx(16.0 - box(0.5, 0.5, 0.9, 0.9).area)
+
+
+def test_thin_stones_that_are_drawn_far_away():
+    """Areas lost their digits there, seeds ran away, and Qhull found all of them on one line."""
+    width, height, far = 0.10983992996647383, 1.2042607084440763e-05, [-651.1005155734447, 6546.260259501219]
+    outline = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]]) + far
+    pattern = voronoi.VoronoiPattern(cells=4, relax=100, stretch=0.11)
+    found = voronoi.cells_in(outline, 4, pattern, draws(817596793))
+    areas = [polygon.area(found.corners[list(stone)] - far) for stone in found.stones]
+    assert sum(areas) == pytest.approx(width * height, rel=1e-6)
+    assert min(areas) > 0.1 * width * height
+
+
+def test_an_outline_that_is_flat_is_refused():
+    with pytest.raises(KeyProblem, match=r"needs sides that differ by less than 1 to 10000; found 100 by 0\.001 m"):
+        voronoi.cells_in(np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 1e-3]]), 4, RELAXED, draws(1))
