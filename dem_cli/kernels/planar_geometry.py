@@ -19,6 +19,7 @@ from dem_cli.kernels.jit import always_inline, inline, kernel
 from dem_cli.kernels.vec import load
 
 BLEND = 0.02  # share of the shorter edge over which the normal turns
+NARROW = 1e-4  # of the shorter edge: overlaps of less than that length are none
 
 
 @always_inline
@@ -70,13 +71,15 @@ def refresh_lengths(scales, joint, a0, a1, b0, b1):
 
 @always_inline
 def overlap_of(a0, a1, b0, b1, length_a, per_a, per_b, blend):
-    """The overlap of two edges: its length, the gaps of both ends, and what `place_end` needs."""
+    """The overlap of two edges: its length, 0 where it is too narrow, the gaps of both ends, and what `place_end` needs."""
     ta = ((a1[0] - a0[0]) * per_a, (a1[1] - a0[1]) * per_a)
     tb = ((b1[0] - b0[0]) * per_b, (b1[1] - b0[1]) * per_b)
     # How far the edge of b ends inside that of a, at both ends, along a and along b; then the clipped overlap.
     lx, ly, hx, hy = b1[0] - a0[0], b1[1] - a0[1], a1[0] - b0[0], a1[1] - b0[1]
     low, high = lx * ta[0] + ly * ta[1], hx * ta[0] + hy * ta[1]
     overlap = length_a - max(low, 0.0) - max(high, 0.0)
+    if overlap * blend <= 0.25 / BLEND * NARROW:
+        overlap = min(overlap, 0.0)
     share_low = share_of(low - lx * tb[0] - ly * tb[1], blend)
     share_high = share_of(high - hx * tb[0] - hy * tb[1], blend)
     # Distance of a corner to the other edge, positive outside; the outward normal is (ty, -tx).
