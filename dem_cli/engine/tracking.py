@@ -148,13 +148,15 @@ class JointTracking:
     def detect(self, bodies: Bodies) -> None:
         """New faces after large motion; memory follows the contact points."""
         old = self.arrays()
-        if self.unpassed.any():
+        before = self.unpassed
+        if before.any():
             room = self._room(bodies)
-            self.unpassed &= room >= 0.0
+            self.unpassed = before & (room >= 0.0)
             self._look_ahead(0.0, room[self.unpassed])
         Gauge(self).measured(self, bodies)  # the points of the old joints, for those that move on
         faces = self.faces_within(bodies, self.reach)
         new = build_joints(self.model, faces, bodies, self.properties, self.n_memory, self.chains)
+        self._begin_unpressed(new, before & ~self.unpassed)
         carry_memory(motion_of(self.model.dimension), old, new, self.properties)
         if bodies.travel.max(initial=0.0) < self.settings.same_place * self.reach:
             # Still the same faces though nothing moved: do not ask again at every step.
@@ -162,6 +164,18 @@ class JointTracking:
             new.contacts.stale[:-1] |= same_rows(asked, new.geometry.keys) >= 0
         self.take(new)
         self.detections += 1
+
+
+    def _begin_unpressed(self, new: JointArrays, passed: np.ndarray) -> None:
+        """Joints of parts that have just passed each other, (n_meetings,) bool, press by what they close from now on.
+
+        How deep corners were inside each other meanwhile is no elastic overlap: nothing did that work. Where there is no
+        closure (engine/rigid_joints.py), in time histories, nobody asks for it.
+        """
+        if passed.any():
+            parts = self.model.topology.face_parts[new.geometry.faces]
+            own = (same_rows(self.meetings.parts[passed], parts) >= 0)[new.joints.owners]
+            new.contacts.closure[own] = np.minimum(new.contacts.gaps[own], 0.0)
 
 
 class Gauge:

@@ -135,8 +135,7 @@ def test_a_cube_that_slides_over_the_rim_keeps_its_energy(angle, speed):
 def test_a_corner_of_a_stone_aslant_has_the_normal_of_the_face_that_it_has_entered(angle, side, chained):
     """A thousandth of an edge before the rim that of the table, behind it that of the cube; no bisector."""
     sim, depth = on_a_rim(chained=chained), 1e-6
-    way = side * 1e-3 * SIDE * np.array([np.cos(angle / 2), np.sin(angle / 2)])
-    x, y = way + depth * np.array([np.sin(angle / 2), -np.cos(angle / 2)])
-    force, _ = pressed(sim, x, y, angle)
-    normal = np.array([0.0, 1.0]) if side < 0.0 else np.array([-np.sin(angle), np.cos(angle)])
-    assert force[:2] / np.hypot(*force[:2]) == pytest.approx(normal, abs=1e-9)
+    along = np.array([1.0, 0.0]) if side < 0.0 else np.array([np.cos(angle), np.sin(angle)])
+    normal = np.array([-along[1], along[0]])
+    force, _ = pressed(sim, *(side * 1e-3 * SIDE * along - depth * normal), angle)
+    assert force[:2] == pytest.approx(KN * depth * normal, rel=1e-6, abs=1e-6 * KN * depth)
