@@ -14,7 +14,7 @@ from dem_cli.contact.joints import DrawnFaces, Faces, JointArrays, JointProperti
 from dem_cli.contact.layout import PointLayout, ProfileFault, steepest, too_steep
 from dem_cli.geometry.rotation import across, cross
 from dem_cli.kernels.neighbours import find_pairs, place_corners
-from dem_cli.kernels.planar_geometry import BLEND, measure
+from dem_cli.kernels.planar_geometry import BLEND, FLAT, STEEPER, measure
 from dem_cli.kernels.planar_profiles import measure_profiles
 from dem_cli.kernels.records import BlockShapes, Bodies, Contacts, Joints, MovingJoints, PlanarGeometry
 from dem_cli.model.model import Model
@@ -229,8 +229,10 @@ def profile_fault(
 def corner_shares(joints: Joints, geometry: PlanarGeometry, corners: np.ndarray) -> np.ndarray:
     """Share of the edge of a in the normal of each point: 1 but at ends near or beyond a corner of a, (n_points,)."""
     a0, a1, b0, b1 = (corners[geometry.edges[:, i]] for i in range(4))
-    both = (a1 - a0) * geometry.scales[:, [1]] - (b1 - b0) * geometry.scales[:, [2]]
+    along_a, along_b = (a1 - a0) * geometry.scales[:, [1]], (b1 - b0) * geometry.scales[:, [2]]
+    both = along_a - along_b
+    blend = geometry.scales[:, 3] * (1.0 + STEEPER * np.maximum(np.abs(cross(along_a, along_b)) - FLAT, 0.0))
     found = np.ones(len(joints.kn))
     for inside, ends in ((b1 - a0, joints.starts[:-1]), (a1 - b0, joints.starts[1:] - 1)):
-        found[ends] = np.clip(0.5 + (inside * both).sum(axis=1) * geometry.scales[:, 3], 0.0, 1.0)
+        found[ends] = np.clip(0.5 + (inside * both).sum(axis=1) * blend, 0.0, 1.0)
     return found

@@ -219,8 +219,7 @@ class DynamicSimulation(Simulation):
             if last:
                 self.centred = 0.5 * (before + self.ledger)
                 self.centred[slot.FRICTION] = self.ledger[slot.FRICTION]
-            if self.tracking.due(self.bodies):
-                self.detect()
+            self.follow_faces()
             self.steps += advanced
             self.time = self.dt * (done + step)
             if looker is not None and (done + step) % looker.every == 0:

@@ -58,6 +58,9 @@ class DetectionSettings:
 
     skin: float = 0.05  # reach, as a share of the smallest edge
     wide_skin: float = 0.15  # of blocks that rock and move far: fewer detections are worth more joints to look at
+    passing: float = 1e-4  # of a part: corners that met at the start have not passed each other before
+    overlaps: float = 2.0  # nor before so many times the largest elastic overlap
+    looks: float = 0.1  # of that way: between two looks whether they have
     same_place: float = 0.01  # of the reach: blocks that moved less have the same faces as before
     shortest_call: int = 100  # steps of one compiled call, at least
     tiled_from: int = 1_000  # contact points from which joints of fixed geometry are worked on many at once

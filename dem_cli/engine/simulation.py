@@ -90,7 +90,6 @@ class Simulation:
         self.most_kinetic = 0.0  # kinetic energy that a time history was seen to have [J]
         self.reference_positions = self.bodies.positions.copy()
         self.tracking = self._track(law.n_memory(model.dimension) + self.n_damped, self.skin * self.smallest)
-        self.control[slot.TRAVEL_LIMIT] = self.tracking.farthest
         self._take_joints()
         self.first_joints = len(self.joints.blocks)  # of the start
         self.first_points = int(points_in_use(self.joints).sum())
@@ -148,6 +147,13 @@ class Simulation:
         self.tracking.detect(self.bodies)
         self._take_joints()
 
+    def follow_faces(self) -> None:
+        """New faces where that is due."""
+        if self.kinematics == "large":
+            if self.tracking.due(self.bodies):
+                self.detect()
+            self.control[slot.TRAVEL_LIMIT] = self.tracking.farthest
+
     def measured(self) -> Contacts:
         """Contacts with the gaps of this instant; frames, levers and points of the joints follow, nothing else."""
         if self._gauge is None or not self._gauge.fits(self.tracking):
@@ -162,6 +168,7 @@ class Simulation:
             self.tracking.tile(self.n_in_lanes, self.threads)
         self.longest = max(detection.shortest_call, detection.longest_call // max(1, len(self.joints.kn)))
         self.bodies.travel[:] = 0.0
+        self.control[slot.TRAVEL_LIMIT] = self.tracking.farthest
         self._masses.clear()
         self.set_masses()
 
@@ -227,8 +234,7 @@ class Simulation:
             left -= done
             self.steps += done
             load += self.control[slot.MEAN_LOAD] * done
-            if self.kinematics == "large" and self.tracking.due(self.bodies):
-                self.detect()
+            self.follow_faces()
         self.control[slot.MEAN_LOAD] = load / max(n_steps, 1)
 
     @property
@@ -425,6 +431,7 @@ class Simulation:
             self.loads.inverse_masses.copy(),
             self.safety,
             tuple(link.state.copy() for link in self.links),
+            self.tracking.unpassed.copy(),
         )
 
     def restore(self, saved: SavedState) -> None:
@@ -434,6 +441,7 @@ class Simulation:
         contacts = Contacts(*(a.copy() for a in saved.contacts))
         self.tracking.take(JointArrays(saved.joints.kept(), saved.geometry.kept(), contacts))
         self.control[:], self.ledger[:] = saved.control, saved.ledger
+        self.tracking.unpassed, self.tracking.farthest = saved.unpassed.copy(), float(saved.control[slot.TRAVEL_LIMIT])
         self.loads.inverse_masses[:] = saved.inverse_masses
         self.safety = saved.safety
         for link, state in zip(self.links, saved.links, strict=True):

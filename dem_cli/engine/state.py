@@ -9,6 +9,8 @@ import numpy as np
 from dem_cli.contact.joints import JointGeometry
 from dem_cli.kernels.records import Bodies, Contacts, Joints
 
+NONE_MEET = np.zeros(0, bool)
+
 
 class SavedState(NamedTuple):
     """Everything of a simulation that changes, at one instant: what `restore` goes back to."""
@@ -22,6 +24,7 @@ class SavedState(NamedTuple):
     inverse_masses: np.ndarray  # as Loads.inverse_masses
     safety: float  # of the fictitious masses
     links: tuple[np.ndarray, ...] = ()  # state of the links of each kind
+    unpassed: np.ndarray = NONE_MEET  # as JointTracking.unpassed, (n_meetings,)
 
 
 class Books(NamedTuple):

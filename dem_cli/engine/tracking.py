@@ -8,11 +8,12 @@ from operator import is_
 import numpy as np
 
 from dem_cli.contact.assemble import build_joints
+from dem_cli.contact.corner_meetings import corner_meetings
 from dem_cli.contact.geometry import NarrowPhase, geometry_of, motion_of
 from dem_cli.contact.joints import Faces, JointArrays, JointProperties
 from dem_cli.contact.keys import same_rows
 from dem_cli.contact.memory import carry_memory
-from dem_cli.contact.start import bond_touching, close_touching, joints_of_start
+from dem_cli.contact.start import TOUCHING_GAP, bond_touching, close_touching, joints_of_start
 from dem_cli.engine.settings import DEFAULT, DetectionSettings
 from dem_cli.kernels.fixed_joints import FixedJoints
 from dem_cli.kernels.records import Bodies, Contacts
@@ -30,6 +31,9 @@ class JointTracking:
     reach      how near faces are that may soon touch [m]
     joints, geometry, contacts     the present ones
     detections                     how often they were looked for
+    meetings                       parts that met corner to corner at the start
+    unpassed                       those of them that have not passed each other, and have no joint, (n_meetings,) bool
+    farthest                       how far a block may move until faces are looked at again [m]
     """
 
     def __init__(
@@ -40,6 +44,8 @@ class JointTracking:
         self.smallest, self.reach, self.settings = smallest, reach, settings
         self.chains = None  # what comes back of the joints of the start
         self.detections = 0
+        self.unpassed = np.zeros(0, bool)
+        self.farthest = 0.5 * reach  # two may come towards each other
         self.take(self._first(bodies))
 
     @property
@@ -84,7 +90,12 @@ class JointTracking:
         self.detections += 1
         if not self.moves:
             return joints_of_start(model, bodies, self.properties, self.smallest, n_memory)
-        faces = self.faces_within(bodies, self.reach)
+        found = self.properties.acting(model, self.narrow.find(model, bodies.corners, self.reach))
+        still = geometry_of(model.dimension)
+        self.meetings = corner_meetings(model, still, found, bodies, TOUCHING_GAP * self.smallest)
+        self.unpassed = np.ones(len(self.meetings.parts), bool)
+        self._look_ahead(0.0, self.settings.passing * self.meetings.sizes)
+        faces = self._passed(found)
         self.chains = self.narrow.chains_of(model, faces, bodies.corners, self.properties)
         built = build_joints(model, faces, bodies, self.properties, n_memory, self.chains)
         close_touching(built.contacts, self.smallest)
@@ -94,23 +105,58 @@ class JointTracking:
     def faces_within(self, bodies: Bodies, distance: float) -> Faces:
         """Pairs of faces that are nearer to each other than a distance [m], where the blocks are now."""
         found = self.narrow.find(self.model, bodies.corners, distance)
-        return self.properties.acting(self.model, found)
+        return self._passed(self.properties.acting(self.model, found))
 
-    @property
-    def farthest(self) -> float:
-        """How far a block may move until faces are found anew [m]: two may come towards each other."""
-        return 0.5 * self.reach
+    def _passed(self, faces: Faces) -> Faces:
+        """Without those of parts that met corner to corner and have not passed each other since."""
+        if not self.unpassed.any():
+            return faces
+        return faces.where(same_rows(self.meetings.parts[self.unpassed], faces.parts) < 0)
+
+    def _room(self, bodies: Bodies) -> np.ndarray:
+        """How far parts that met corner to corner may still move until one has passed the other [m], (n_meetings,).
+
+        By more than the elastic overlap there, and by more than what is no width of a joint.
+        """
+        pressed = self.joints.kn > 0.0
+        deepest = float((self.contacts.normal[pressed] / self.joints.kn[pressed]).max(initial=0.0))
+        passing = np.maximum(self.settings.passing * self.meetings.sizes, self.settings.overlaps * deepest)
+        return passing - self.meetings.shifts(bodies)
+
+    def _look_ahead(self, travel: float, room: np.ndarray) -> None:
+        """Until when no corner can have passed another one. travel: of the farthest block up to now [m]; room: of
+        those that have not (n,) [m]."""
+        self.farthest = 0.5 * self.reach  # two may come towards each other
+        if len(room):
+            least = self.settings.looks * self.settings.passing * float(self.meetings.sizes[self.unpassed].min())
+            self.farthest = min(self.farthest, travel + 0.5 * max(float(room.min()), least))
 
     def due(self, bodies: Bodies) -> bool:
-        """Whether a block has moved so far, or a corner so passed an edge, that there may be other faces."""
-        return bool(bodies.travel.max(initial=0.0) > self.farthest or self.contacts.stale[-1])
+        """Whether a block has moved so far, or a corner so passed another one, that there may be other faces.
+
+        Else `farthest` says how far blocks may move until the next look.
+        """
+        travel = float(bodies.travel.max(initial=0.0))
+        if travel > 0.5 * self.reach or self.contacts.stale[-1]:
+            return True
+        if travel > self.farthest:
+            room = self._room(bodies)[self.unpassed]
+            self._look_ahead(travel, room)
+            return bool((room < 0.0).any())
+        return False
 
     def detect(self, bodies: Bodies) -> None:
         """New faces after large motion; memory follows the contact points."""
         old = self.arrays()
+        before = self.unpassed
+        if before.any():
+            room = self._room(bodies)
+            self.unpassed = before & (room >= 0.0)
+            self._look_ahead(0.0, room[self.unpassed])
         Gauge(self).measured(self, bodies)  # the points of the old joints, for those that move on
         faces = self.faces_within(bodies, self.reach)
         new = build_joints(self.model, faces, bodies, self.properties, self.n_memory, self.chains)
+        self._begin_unpressed(new, before & ~self.unpassed)
         carry_memory(motion_of(self.model.dimension), old, new, self.properties)
         if bodies.travel.max(initial=0.0) < self.settings.same_place * self.reach:
             # Still the same faces though nothing moved: do not ask again at every step.
@@ -118,6 +164,18 @@ class JointTracking:
             new.contacts.stale[:-1] |= same_rows(asked, new.geometry.keys) >= 0
         self.take(new)
         self.detections += 1
+
+
+    def _begin_unpressed(self, new: JointArrays, passed: np.ndarray) -> None:
+        """Joints of parts that have just passed each other, (n_meetings,) bool, press by what they close from now on.
+
+        How deep corners were inside each other meanwhile is no elastic overlap: nothing did that work. Where there is no
+        closure (engine/rigid_joints.py), in time histories, nobody asks for it.
+        """
+        if passed.any():
+            parts = self.model.topology.face_parts[new.geometry.faces]
+            own = (same_rows(self.meetings.parts[passed], parts) >= 0)[new.joints.owners]
+            new.contacts.closure[own] = np.minimum(new.contacts.gaps[own], 0.0)
 
 
 class Gauge:

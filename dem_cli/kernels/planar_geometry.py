@@ -5,8 +5,10 @@ the one that lies inside, seen along the bisector of both edges. There its gap i
 and the way from one to the other goes across the joint: where they pass each other neither gap nor moment jumps.
 The normal is that of the edge, and jumps by the angle between both. Where corners nearly coincide (a hinge of an arch,
 the end of a column joint) they pass with every vibration: within BLEND of an edge length the normal turns smoothly
-from one edge to the other, by way of the bisector. Nothing else is blended: a place between two corners that are not
-the same lies outside the overlap.
+from one edge to the other, by way of the bisector. That is so of a hinge, whose edges open by a small angle. Corners of
+stones that lie aslant have the normal of the edge that one of them has entered: the bisector belongs to neither, and
+held up stones that slide out. Nothing else is blended: a place between two corners that are not the same lies outside
+the overlap.
 """
 
 from __future__ import annotations
@@ -19,6 +21,9 @@ from dem_cli.kernels.jit import always_inline, inline, kernel
 from dem_cli.kernels.vec import load
 
 BLEND = 0.02  # share of the shorter edge over which the normal turns
+FLAT = 0.3  # sine of the angle between two edges, up to which they are the sides of a hinge
+STEEPER = 5000.0  # beyond it, per sine: how many times as soon the normal turns
+NARROW = 1e-4  # of the shorter edge: overlaps of less than that length are none
 
 
 @always_inline
@@ -61,6 +66,12 @@ def share_of(twice_inside, blend):
 
 
 @always_inline
+def sharper(blend, ta, tb):
+    """`blend` of share_of for edges along ta and tb: as it is where these open like a hinge, else far larger."""
+    return blend * (1.0 + STEEPER * max(abs(ta[0] * tb[1] - ta[1] * tb[0]) - FLAT, 0.0))
+
+
+@always_inline
 def refresh_lengths(scales, joint, a0, a1, b0, b1):
     """Lengths of the two edges of blocks that deform, into the `scales` of their joint."""
     length_a = math.sqrt((a1[0] - a0[0]) ** 2 + (a1[1] - a0[1]) ** 2)
@@ -70,13 +81,16 @@ def refresh_lengths(scales, joint, a0, a1, b0, b1):
 
 @always_inline
 def overlap_of(a0, a1, b0, b1, length_a, per_a, per_b, blend):
-    """The overlap of two edges: its length, the gaps of both ends, and what `place_end` needs."""
+    """The overlap of two edges: its length, none where it is narrow, the gaps of its ends, what `place_end` needs."""
     ta = ((a1[0] - a0[0]) * per_a, (a1[1] - a0[1]) * per_a)
     tb = ((b1[0] - b0[0]) * per_b, (b1[1] - b0[1]) * per_b)
     # How far the edge of b ends inside that of a, at both ends, along a and along b; then the clipped overlap.
     lx, ly, hx, hy = b1[0] - a0[0], b1[1] - a0[1], a1[0] - b0[0], a1[1] - b0[1]
     low, high = lx * ta[0] + ly * ta[1], hx * ta[0] + hy * ta[1]
     overlap = length_a - max(low, 0.0) - max(high, 0.0)
+    if overlap * blend <= 0.25 / BLEND * NARROW:
+        overlap = min(overlap, 0.0)
+    blend = sharper(blend, ta, tb)
     share_low = share_of(low - lx * tb[0] - ly * tb[1], blend)
     share_high = share_of(high - hx * tb[0] - hy * tb[1], blend)
     # Distance of a corner to the other edge, positive outside; the outward normal is (ty, -tx).

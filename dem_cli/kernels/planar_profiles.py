@@ -21,7 +21,7 @@ from dem_cli.kernels.deformation.pressed_faces import line_gaps
 from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
-from dem_cli.kernels.planar_geometry import apart, place_end, refresh_lengths, share_of
+from dem_cli.kernels.planar_geometry import apart, place_end, refresh_lengths, share_of, sharper
 from dem_cli.kernels.records import INTEGRATED
 from dem_cli.kernels.vec import axpy, compose, load, scale, sliding
 
@@ -54,7 +54,7 @@ def _along(start, end, t):
 @always_inline
 def _end(twice_inside, blend, corner_a, corner_b, ta, ts, on_side):
     """Gap at an end of the joint, and its share as in planar_geometry.py, with a side of the chain as edge of b."""
-    share = share_of(twice_inside, blend)
+    share = share_of(twice_inside, sharper(blend, ta, ts))
     gap = _outside(corner_b, corner_a, ta) if share >= 0.5 else _outside(corner_a, on_side, ts)
     return gap, share
 

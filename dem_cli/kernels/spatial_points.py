@@ -46,6 +46,7 @@ SPREAD = 9  # 1: friction has the torsion of a spread pressure (contact/corner_f
 
 MOVED = 1e-3  # of SIZE: motion along the joint after which it is renewed
 SLIVER = 1e-6  # of FLOOR: overlaps below it are none; tips sink unseen by about its root
+NARROW = 1e-4  # of SIZE: overlaps of less than that width are none
 LOCAL = 1024  # corners of a part that features tell apart
 CAP = 2 * LOCAL + LOCAL**4  # features of caps: from here on, beyond those of crossings
 LABEL = 2  # column of row 2: what a corner of the overlap is
@@ -91,6 +92,16 @@ def torsion_now(geometry, joint, count):
 
 
 @always_inline
+def _perimeter(work, count):
+    """Of the overlap in row 2 of `work` [m]."""
+    around = 0.0
+    for k in range(count):
+        m = k + 1 if k + 1 < count else 0
+        around += math.hypot(work[2, m, 0] - work[2, k, 0], work[2, m, 1] - work[2, k, 1])
+    return around
+
+
+@always_inline
 def _clipped(geometry, vertices, joint, frame, along, work):
     """Overlap of the two faces of a joint in row 2 of `work`, with areas; returns corners, area, and its centroid."""
     face_a, face_b = geometry.faces[joint, 0], geometry.faces[joint, 1]
@@ -106,7 +117,7 @@ def _clipped(geometry, vertices, joint, frame, along, work):
     area, gx, gy, polar = area_of(work, count)
     least = max(SLIVER * geometry.scales[joint, FLOOR], (SAME * size) ** 2)
     count = simplify(work, count, SAME * size)
-    if count < 3 or area <= least:
+    if count < 3 or area <= least or 2.0 * area <= NARROW * size * _perimeter(work, count):
         return 0, 0.0, origin, 0.0
     fading_areas(work, count, area, gx, gy)
     lumped, floor = 0.0, max(geometry.scales[joint, FLOOR] / area, 1.0)

@@ -62,8 +62,7 @@ def shift(sim: Simulation, motion: np.ndarray) -> None:
 def push(sim: Simulation, motion: np.ndarray) -> None:
     """Moves all blocks by small displacements (n_blocks, n_dof) [m, rad]; forces of joints answer in the next step."""
     _move(sim, motion)
-    if sim.tracking.due(sim.bodies):
-        sim.detect()
+    sim.follow_faces()
 
 
 def move_to(sim: Simulation, motion: np.ndarray, shear: np.ndarray, load: float, friction: float) -> None:
@@ -91,8 +90,7 @@ def move_to(sim: Simulation, motion: np.ndarray, shear: np.ndarray, load: float,
     sim.ledger[slot.FRICTION] += friction
     sim.ledger[slot.DAMPING] += given - friction - (sim.elastic_energy() - before)
     sim.ledger[slot.CONTACT] -= given
-    if sim.tracking.due(sim.bodies):
-        sim.detect()
+    sim.follow_faces()
 
 
 def place_at_rest(

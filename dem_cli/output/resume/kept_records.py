@@ -18,6 +18,7 @@ from dem_cli.registration import Registered
 _PLACES = {
     "contact.caps": ("Caps",),
     "contact.chains": ("Chains",),
+    "contact.corner_meetings": ("CornerMeetings",),
     "contact.joints": ("JointArrays",),
     "dynamics.coda": ("Ending", "Swings"),
     "dynamics.collapse_criterion": ("CollapsedBlock",),
