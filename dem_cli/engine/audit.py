@@ -27,7 +27,7 @@ def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[
         advice = "lower analysis.margin" if hasattr(case.analysis, "margin") else "do not trust this run"
         said.append(f"the energy does not close: {worst:.2%} is missing; {advice}")
     if overlap > doubts.overlap:
-        crushes = any(joint.law == "crushing" for joint in case.joints.values())
+        crushes = any(getattr(joint, "compression", None) is not None for joint in case.joints.values())
         why = "stone that is crushed, beside what joints give" if crushes else "the joints are too soft"
         said.append(f"blocks overlap by {overlap:.1%} of the smallest edge: {why}")
     said += _reweighted(case, sims)

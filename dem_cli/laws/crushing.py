@@ -18,6 +18,7 @@ from dem_cli.kernels.vec import axpy, norm, scale
 from dem_cli.laws.envelope import Envelope, envelope
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
+from dem_cli.laws.stiffness import SECTION
 
 
 class CrushingJoint(FrictionJoint):
@@ -25,6 +26,11 @@ class CrushingJoint(FrictionJoint):
 
     law: Literal["crushing"] = "crushing"
     compression: Positive = Field(description="compressive strength fc [Pa]", examples=[8e6])
+
+    @property
+    def plane_points(self) -> int:
+        """Those of a whole section, so that it is crushed bit by bit from its edge."""
+        return SECTION
 
 
 @inline

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -12,14 +12,13 @@ from dem_cli.laws.profile import Profile
 # Contact points of a plane joint whose stiffness is a property, by dimension; in 3D along each side. With points at its
 # ends or vertices alone its moment is three times too stiff, and walls carry too much (docs/deformable.md).
 BENDING_POINTS = {2: 5, 3: 3}
-AREA_POINTS = {"vertices": 2, "vertices+centre": 3}  # in 3D, and points of a joint in 2D that is as stiff in bending
+SECTION = 16  # that with which a joint is as strong as its whole section: contact/layout.py, and there SECTION as well
+AREA_POINTS = {"vertices": 2, "vertices+centre": 3, "section": SECTION}  # in 3D; in 2D as stiff in bending
 Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
 
 
 class StiffJoint(CaseModel):
     """Normal and shear stiffness of a joint per unit area, its profile or the number of its contact points."""
-
-    plane_points: ClassVar[int] = 2  # contact points of a plane joint so stiff that its stiffness drops out
 
     if TYPE_CHECKING:
         law: str  # each law's own table declares it, with its name as the only value
@@ -33,12 +32,13 @@ class StiffJoint(CaseModel):
         description="shape of contact surfaces that are not plane; default: plane",
         examples=[{"sides": 3, "aperture": 1e-4}],
     )
-    points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices", "vertices+centre"] | None = Field(
+    points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices", "vertices+centre", "section"] | None = Field(
         default=None,
         description="contact points of a plane joint: so many, at Gauss-Lobatto places; in 3D so many along each side "
-        "of the area of contact, or at its vertices alone, or at its centre as well; default: 2, in 3D vertices; 5, in "
-        "3D 3, where kn is given or blocks deform (materials.NAME.young) in analyses without time; where the joint can "
-        "crack 5, where it is elastic 3, in 3D vertices+centre",
+        "of the area of contact, or at its vertices alone, or at its centre as well; section: 16, in 3D 57, with "
+        "which a joint that cracks or is crushed is as strong in bending as its whole section; default: section where "
+        "the joint has tension, cohesion or compression; of others 2, in 3D vertices; 5, in 3D 3, where kn is given or "
+        "blocks deform (materials.NAME.young) in analyses without time; where it is elastic 3, in 3D vertices+centre",
         examples=[5],
     )
 
@@ -56,9 +56,14 @@ class StiffJoint(CaseModel):
         return self
 
     @property
+    def plane_points(self) -> int:
+        """Contact points of a plane joint so stiff that its stiffness drops out; in 3D 3 to 5: with its centre."""
+        return 2
+
+    @property
     def bends(self) -> bool:
         """Whether it opens bit by bit as it bends, and has BENDING_POINTS where its stiffness is a property."""
-        return True
+        return self.plane_points != SECTION
 
     def follows(self, deforms: bool = False, lands: bool = False) -> bool:
         """Whether its contact points are those that its bending stiffness asks for.
@@ -79,11 +84,10 @@ class StiffJoint(CaseModel):
             return self.points
         if self.follows(deforms, lands):
             return BENDING_POINTS[dimension]
-        if dimension == 3:
-            return 2
-        return self.plane_points if self.points is None else AREA_POINTS[self.points]
+        points = self.plane_points if self.points is None else AREA_POINTS[self.points]
+        return 2 if dimension == 3 and points != SECTION else points
 
     def centred(self, dimension: int, deforms: bool = False, lands: bool = False) -> bool:
         """Whether its contact points are the vertices and the centre of an area. deforms, lands: as in `follows`."""
-        asked = self.points == "vertices+centre" or (self.points is None and self.plane_points > 2)
+        asked = self.points == "vertices+centre" or (self.points is None and 2 < self.plane_points < SECTION)
         return asked and dimension == 3 and not self.follows(deforms, lands)
