@@ -174,4 +174,4 @@ FRACTURE = Law(
     source="after Lourenço and Rots 1997: exponential softening in tension and shear, coupled by one strength",
 )
 
-CRUSHED = capped(FRACTURE, "fracture with compression", 7)
+CRUSHED: Law = capped(FRACTURE, "fracture with compression", 7)

@@ -240,4 +240,4 @@ MOHR_COULOMB = Law(
     source="papers 001 (brittle bond) and 002 (dilation up to a limiting slip)",
 )
 
-CRUSHED = capped(MOHR_COULOMB, "mohr-coulomb with compression", 9)
+CRUSHED: Law = capped(MOHR_COULOMB, "mohr-coulomb with compression", 9)
