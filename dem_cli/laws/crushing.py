@@ -18,7 +18,6 @@ from dem_cli.kernels.vec import axpy, norm, scale
 from dem_cli.laws.envelope import Envelope, envelope
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
-from dem_cli.laws.stiffness import SECTION
 
 
 class CrushingJoint(FrictionJoint):
@@ -28,9 +27,9 @@ class CrushingJoint(FrictionJoint):
     compression: Positive = Field(description="compressive strength fc [Pa]", examples=[8e6])
 
     @property
-    def plane_points(self) -> int:
-        """Those of a whole section, so that it is crushed bit by bit from its edge."""
-        return SECTION
+    def cracks(self) -> bool:
+        """It is crushed bit by bit from its edge."""
+        return True
 
 
 @inline

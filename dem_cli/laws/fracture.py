@@ -29,7 +29,6 @@ from dem_cli.laws.decay import slip_on_decay
 from dem_cli.laws.envelope import Envelope, envelope, frictional
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
-from dem_cli.laws.stiffness import SECTION
 
 STRENGTH, OPENED = 0, 1  # memory: share of the strength that is left [-], largest inelastic opening [m]
 GONE = 1e-9  # share of the strength below which nothing is left
@@ -56,8 +55,13 @@ class FractureJoint(FrictionJoint):
 
     @property
     def plane_points(self) -> int:
-        """Those of a whole section, so that it cracks bit by bit."""
-        return SECTION
+        """Five, so that it cracks point by point in time histories too."""
+        return 5
+
+    @property
+    def cracks(self) -> bool:
+        """It does."""
+        return True
 
     @property
     def residual(self) -> float:

@@ -27,7 +27,6 @@ from dem_cli.laws.cap import capped, check_cap
 from dem_cli.laws.envelope import Envelope, envelope
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
-from dem_cli.laws.stiffness import SECTION
 
 INTACT, NEVER, BROKEN = 1.0, 0.0, -1.0  # state of the bond, memory[point, 0]
 STATE, PULLED, SLIP = 0, 1, 2  # memory: state, plastic opening [m], slip [m]
@@ -62,8 +61,13 @@ class MohrCoulombJoint(FrictionJoint):
 
     @property
     def plane_points(self) -> int:
-        """Those of a whole section, so that it cracks bit by bit; five where there is nothing to crack."""
-        return SECTION if self.cohesion > 0.0 or self.tension > 0.0 or self.compression is not None else 5
+        """Five, also where there is no bond that could crack."""
+        return 5
+
+    @property
+    def cracks(self) -> bool:
+        """Where there is any strength beside friction."""
+        return self.cohesion > 0.0 or self.tension > 0.0 or self.compression is not None
 
     @property
     def residual(self) -> float:

@@ -13,7 +13,7 @@ from dem_cli.laws.profile import Profile
 # ends or vertices alone its moment is three times too stiff, and walls carry too much (docs/deformable.md).
 BENDING_POINTS = {2: 5, 3: 3}
 SECTION = 16  # that with which a joint is as strong as its whole section: contact/layout.py, and there SECTION as well
-AREA_POINTS = {"vertices": 2, "vertices+centre": 3, "section": SECTION}  # in 3D; in 2D as stiff in bending
+AREA_POINTS = {"vertices": 2, "vertices+centre": 3}  # in 3D; in 2D as stiff in bending
 Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
 
 
@@ -37,8 +37,9 @@ class StiffJoint(CaseModel):
         description="contact points of a plane joint: so many, at Gauss-Lobatto places; in 3D so many along each side "
         "of the area of contact, or at its vertices alone, or at its centre as well; section: 16, in 3D 57, with "
         "which a joint that cracks or is crushed is as strong in bending as its whole section; default: section where "
-        "the joint has tension, cohesion or compression; of others 2, in 3D vertices; 5, in 3D 3, where kn is given or "
-        "blocks deform (materials.NAME.young) in analyses without time; where it is elastic 3, in 3D vertices+centre",
+        "the joint has tension, cohesion or compression, but for time histories; else 2, in 3D vertices; 5, in 3D 3, "
+        "where kn is given or blocks deform (materials.NAME.young) in analyses without time; in time histories with "
+        "tension or cohesion 5, and where it is elastic 3, in 3D vertices+centre",
         examples=[5],
     )
 
@@ -61,9 +62,18 @@ class StiffJoint(CaseModel):
         return 2
 
     @property
+    def cracks(self) -> bool:
+        """Whether it cracks or is crushed bit by bit as it bends: it has SECTION points then, but in time histories."""
+        return False
+
+    @property
     def bends(self) -> bool:
         """Whether it opens bit by bit as it bends, and has BENDING_POINTS where its stiffness is a property."""
-        return self.plane_points != SECTION
+        return not self.cracks
+
+    def sectional(self, lands: bool = False) -> bool:
+        """Whether it has the points with which it is as strong as its whole section. lands: as in `follows`."""
+        return self.points == "section" or (self.points is None and self.profile is None and self.cracks and not lands)
 
     def follows(self, deforms: bool = False, lands: bool = False) -> bool:
         """Whether its contact points are those that its bending stiffness asks for.
@@ -84,10 +94,13 @@ class StiffJoint(CaseModel):
             return self.points
         if self.follows(deforms, lands):
             return BENDING_POINTS[dimension]
-        points = self.plane_points if self.points is None else AREA_POINTS[self.points]
-        return 2 if dimension == 3 and points != SECTION else points
+        if self.sectional(lands):
+            return SECTION
+        if dimension == 3:
+            return 2
+        return self.plane_points if self.points is None else AREA_POINTS[str(self.points)]
 
     def centred(self, dimension: int, deforms: bool = False, lands: bool = False) -> bool:
         """Whether its contact points are the vertices and the centre of an area. deforms, lands: as in `follows`."""
-        asked = self.points == "vertices+centre" or (self.points is None and 2 < self.plane_points < SECTION)
-        return asked and dimension == 3 and not self.follows(deforms, lands)
+        asked = self.points == "vertices+centre" or (self.points is None and self.plane_points > 2)
+        return asked and dimension == 3 and not self.follows(deforms, lands) and not self.sectional(lands)
