@@ -45,7 +45,9 @@ class Scope(NamedTuple):
 
 
 SCOPES = (
-    Scope("joints.NAME.points", 3, "must be an integer from 2 to 9 in 2D", ("vertices", "vertices+centre")),
+    Scope(
+        "joints.NAME.points", 3, "must be an integer from 2 to 9 or 'section' in 2D", ("vertices", "vertices+centre")
+    ),
     Scope("monitor.component", 3, "a rotation has none in 2D", ("x", "y", "z"), beside=("quantity", "rotation")),
     Scope("monitor.component", 3, "a moment has none in 2D", ("x", "y", "z"), beside=("quantity", "reaction_moment")),
     Scope("monitor.component", 3, "must be 'x' or 'y' in 2D", ("z",)),

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from dem_cli.contact.block_compliance import block_compliance
+from dem_cli.contact.layout import SECTION
 from dem_cli.engine import measures
 from dem_cli.engine.automatic_stiffness import ratio_of
 from dem_cli.engine.measures import closure, free_falls, reweighting_shares
@@ -27,7 +28,7 @@ def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[
         advice = "lower analysis.margin" if hasattr(case.analysis, "margin") else "do not trust this run"
         said.append(f"the energy does not close: {worst:.2%} is missing; {advice}")
     if overlap > doubts.overlap:
-        crushes = any(joint.law == "crushing" for joint in case.joints.values())
+        crushes = any(getattr(joint, "compression", None) is not None for joint in case.joints.values())
         why = "stone that is crushed, beside what joints give" if crushes else "the joints are too soft"
         said.append(f"blocks overlap by {overlap:.1%} of the smallest edge: {why}")
     said += _reweighted(case, sims)
@@ -132,26 +133,42 @@ def _stiff_beside(sim: Simulation, compliance: BlockCompliance | None, least: fl
     return said
 
 
-STRONGER = {2: 3.0, 4: 1.35, 5: 1.19, 6: 1.12}  # joints in space by points along a side; corners and centre: CENTRED
-CENTRED = 2.0
+class _Worth(NamedTuple):
+    """Strength in bending of a joint with few points over that of its whole section, about the side of a rectangle."""
+
+    cracked: float  # brittle in tension, at most, at any normal force
+    crushed: tuple[float, float]  # perfectly plastic in compression, from 1/20 to 19/20 of what crushes it
+
+
+# By points along a joint at Gauss-Lobatto places; corners and centre are as three (docs/numerics.md).
+WORTH = {
+    2: _Worth(3.0, (1.06, 2.0)), 3: _Worth(2.33, (0.67, 1.19)), 4: _Worth(1.48, (0.84, 1.08)),
+    5: _Worth(1.26, (0.9, 1.04)), 6: _Worth(1.18, (0.94, 1.03)), 7: _Worth(1.13, (0.95, 1.02)),
+    8: _Worth(1.1, (0.97, 1.01)), 9: _Worth(1.08, (0.98, 1.01)),
+}  # fmt: skip
+NINE = _Worth(1.35, (0.87, 1.15))  # in space, points = 3
 
 
 def _cracking(case: Case, sim: Simulation) -> list[str]:
-    """Joints in space that crack, and whose points let them hold on after their edge has cracked.
-
-    Moment in bending of a rectangle without compression, over that of the first crack, ft W, where a brittle joint that
-    cracks bit by bit ends. Once the far corners have cracked, the centre holds 2/3 ft A at half the width b, ft A b/3,
-    corners alone ft A b/2, and of Gauss-Lobatto points the next row more than the last (contact/area_rules.py).
-    """
-    if sim.contacts.shear.shape[1] < 2:
-        return []
-    found = []
+    """Joints that crack or are crushed at so few points that they are stronger or weaker in bending than a section."""
+    space, found = sim.contacts.shear.shape[1] == 2, []
     for name, layout in zip(sim.properties.names, sim.properties.plane, strict=True):
-        ratio = CENTRED if layout.centred else STRONGER.get(layout.points, 1.0)
-        if getattr(case.joints[name], "tension", 0.0) > 0.0 and ratio > 1.0:
+        if layout.points == SECTION:
+            continue
+        worth = (
+            NINE
+            if space and layout.points == 3 and not layout.centred
+            else WORTH[3 if layout.centred else layout.points]
+        )
+        joint, how = case.joints[name], []
+        if getattr(joint, "tension", 0.0) > 0.0:
+            how.append(f"where it cracks up to {worth.cracked:g} times")
+        if getattr(joint, "compression", None) is not None:
+            how.append(f"where it is crushed {worth.crushed[0]:g} to {worth.crushed[1]:g} times")
+        if how and joint.profile is None:
             found.append(
-                f"tension of joint '{name}' acts at points that let it hold on after it cracked: in bending the load "
-                f"may be up to {ratio:g} times that of a joint that cracks bit by bit; points = 3 does not"
+                f"joint '{name}' has few points: in bending it carries {' and '.join(how)} what a joint does that goes "
+                'bit by bit; points = "section" is within 1 %'
             )
     return found
 

@@ -165,7 +165,6 @@ class JointTracking:
         self.take(new)
         self.detections += 1
 
-
     def _begin_unpressed(self, new: JointArrays, passed: np.ndarray) -> None:
         """Joints of parts that have just passed each other, (n_meetings,) bool, press by what they close from now on.
 

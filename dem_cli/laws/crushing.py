@@ -27,6 +27,11 @@ class CrushingJoint(FrictionJoint):
     law: Literal["crushing"] = "crushing"
     compression: Positive = Field(description="compressive strength fc [Pa]", examples=[8e6])
 
+    @property
+    def cracks(self) -> bool:
+        """It is crushed bit by bit from its edge."""
+        return True
+
 
 @inline
 def crushing(gap, slide, shear, kn, ks, parameters, joint, memory, point):

@@ -7,7 +7,7 @@ For joints that are not to fail. Points that meet later were never joined: they 
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -22,9 +22,13 @@ class ElasticJoint(StiffJoint):
     """[joints.*] with law = "elastic"."""
 
     integrable: ClassVar[bool] = False
-    plane_points: ClassVar[int] = 3
 
     law: Literal["elastic"] = "elastic"
+
+    @property
+    def plane_points(self) -> int:
+        """Three have the bending stiffness of a rectangle."""
+        return 3
 
     @property
     def bends(self) -> bool:

@@ -6,7 +6,8 @@
 
 w is the largest inelastic opening, what the elastic spring kn leaves of the gap; δ is the path of the plastic slip. A
 joint that only opens takes the energy G_I per area, one that only slides G_II beside its friction. Points that meet
-later were never bonded, s = 0. Below a share s of 1e-9 the bond is gone.
+later were never bonded, s = 0. Below a share s of 1e-9 the bond is gone. With a compressive strength points are crushed
+beyond it, N ≤ fc A (laws/cap.py).
 
 The stiffness must be larger than ft² / G_I and c² / G_II; softer springs hold more energy than the crack takes, and the
 force drops at once. Where kn is "auto" the program does not check that.
@@ -15,7 +16,7 @@ force drops at once. Where kn is "auto" the program does not check that.
 from __future__ import annotations
 
 import math
-from typing import ClassVar, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -23,6 +24,7 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import KeyProblem, NonNegative, Positive
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
+from dem_cli.laws.cap import capped, check_cap
 from dem_cli.laws.decay import slip_on_decay
 from dem_cli.laws.envelope import Envelope, envelope, frictional
 from dem_cli.laws.friction import FrictionJoint
@@ -36,7 +38,6 @@ class FractureJoint(FrictionJoint):
     """[joints.*] with law = "fracture"."""
 
     integrable: ClassVar[bool] = False
-    plane_points: ClassVar[int] = 5  # a joint cracks point by point
 
     law: Literal["fracture"] = "fracture"
     tension: Positive = Field(description="tensile strength ft [Pa], at most cohesion / friction", examples=[0.1e6])
@@ -48,6 +49,21 @@ class FractureJoint(FrictionJoint):
     friction_residual: NonNegative | None = Field(
         default=None, description="friction coefficient μr of the crack [-]; default: as before", examples=[0.6]
     )
+    compression: Positive | None = Field(
+        default=None,
+        description="compressive strength fc [Pa], more than the tensile one; default: never crushed",
+        examples=[4e6],
+    )
+
+    @property
+    def plane_points(self) -> int:
+        """Five, so that it cracks point by point in time histories too."""
+        return 5
+
+    @property
+    def cracks(self) -> bool:
+        """It does."""
+        return True
 
     @property
     def residual(self) -> float:
@@ -64,6 +80,11 @@ class FractureJoint(FrictionJoint):
             )
         if self.residual > self.coefficient:
             raise KeyProblem(f"{self.residual:g} is more than friction = {self.coefficient:g}", "friction_residual")
+        return self
+
+    @model_validator(mode="after")
+    def _crushed_beyond_all_else(self) -> Self:
+        check_cap(self.compression, self.tension)
         return self
 
     @model_validator(mode="after")
@@ -155,5 +176,8 @@ FRACTURE = Law(
     scalars=2,
     intact=(1.0,),
     bonded=True,
+    variant=lambda table: None if table.compression is None else CRUSHED,
     source="after Lourenço and Rots 1997: exponential softening in tension and shear, coupled by one strength",
 )
+
+CRUSHED: Law = capped(FRACTURE, "fracture with compression", 7)

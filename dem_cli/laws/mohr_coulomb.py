@@ -6,6 +6,8 @@ u is the plastic slip as a vector, so that the opening d goes back when the join
 tension or in shear; then cohesion, tension and friction are the residual ones at once. Points that meet later were
 never bonded: friction only, the residual one. Only slip under compression opens the joint.
 
+With a compressive strength points are crushed beyond it, N ≤ fc A (laws/cap.py); such a joint does not dilate.
+
 With a residual tension the joint opens like a slack tie: it carries that much, and after unloading nothing until it is
 as far open as it was.
 """
@@ -13,14 +15,15 @@ as far open as it was.
 from __future__ import annotations
 
 import math
-from typing import ClassVar, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import KeyProblem, NonNegative
+from dem_cli.case.base import KeyProblem, NonNegative, Positive
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, dot, load, norm, scale, store
+from dem_cli.laws.cap import capped, check_cap
 from dem_cli.laws.envelope import Envelope, envelope
 from dem_cli.laws.friction import FrictionJoint
 from dem_cli.laws.law import Law
@@ -33,7 +36,6 @@ class MohrCoulombJoint(FrictionJoint):
     """[joints.*] with law = "mohr-coulomb"."""
 
     integrable: ClassVar[bool] = False
-    plane_points: ClassVar[int] = 5  # a joint cracks point by point
 
     law: Literal["mohr-coulomb"] = "mohr-coulomb"
     cohesion: NonNegative = Field(default=0.0, description="cohesion c [Pa]", examples=[0.1e6])
@@ -53,6 +55,21 @@ class MohrCoulombJoint(FrictionJoint):
     friction_residual: NonNegative | None = Field(
         default=None, description="friction coefficient after failure [-]; default: as before", examples=[0.5]
     )
+    compression: Positive | None = Field(
+        default=None,
+        description="compressive strength fc [Pa], more than the tensile one, without dilation; default: never crushed",
+        examples=[4e6],
+    )
+
+    @property
+    def plane_points(self) -> int:
+        """Five, also where there is no bond that could crack."""
+        return 5
+
+    @property
+    def cracks(self) -> bool:
+        """Where there is any strength beside friction."""
+        return self.cohesion > 0.0 or self.tension > 0.0 or self.compression is not None
 
     @property
     def residual(self) -> float:
@@ -79,6 +96,13 @@ class MohrCoulombJoint(FrictionJoint):
                     f"must be at most cohesion / friction = {cohesion / friction:g} Pa",
                     f"tension{key}",
                 )
+        return self
+
+    @model_validator(mode="after")
+    def _crushed_beyond_all_else(self) -> Self:
+        check_cap(self.compression, self.tension)
+        if self.compression is not None and self.dilation_deg > 0.0:
+            raise KeyProblem("not allowed with 'compression': a joint that is crushed does not dilate", "dilation_deg")
         return self
 
     @model_validator(mode="after")
@@ -218,5 +242,8 @@ MOHR_COULOMB = Law(
     vectors=1,
     intact=(INTACT,),
     bonded=True,
+    variant=lambda table: None if table.compression is None else CRUSHED,
     source="papers 001 (brittle bond) and 002 (dilation up to a limiting slip)",
 )
+
+CRUSHED: Law = capped(MOHR_COULOMB, "mohr-coulomb with compression", 9)

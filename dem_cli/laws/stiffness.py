@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -12,7 +12,8 @@ from dem_cli.laws.profile import Profile
 # Contact points of a plane joint whose stiffness is a property but is not integrated, by dimension; in 3D along each
 # side. With points at its ends or vertices alone its moment is three times too stiff (docs/deformable.md).
 BENDING_POINTS = {2: 5, 3: 3}
-AREA_POINTS = {"vertices": 2, "vertices+centre": 3}  # in 3D, and points of a joint in 2D that is as stiff in bending
+SECTION = 16  # that with which a joint is as strong as its whole section: contact/layout.py, and there SECTION as well
+AREA_POINTS = {"vertices": 2, "vertices+centre": 3}  # in 3D; in 2D as stiff in bending
 Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
 
 
@@ -20,7 +21,6 @@ class StiffJoint(CaseModel):
     """Normal and shear stiffness of a joint per unit area, its profile or the number of its contact points."""
 
     integrable: ClassVar[bool] = True  # carries no tension and deforms for no good across the joint
-    plane_points: ClassVar[int] = 2  # contact points of a plane joint so stiff that its stiffness drops out
 
     if TYPE_CHECKING:
         law: str  # each law's own table declares it, with its name as the only value
@@ -34,13 +34,14 @@ class StiffJoint(CaseModel):
         description="shape of contact surfaces that are not plane; default: plane",
         examples=[{"sides": 3, "aperture": 1e-4}],
     )
-    points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices", "vertices+centre"] | None = Field(
+    points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices", "vertices+centre", "section"] | None = Field(
         default=None,
         description="contact points of a plane joint: so many, at Gauss-Lobatto places; in 3D so many along each side "
-        "of the area of contact, or at its vertices alone, or at its centre as well; default: 2, in 3D vertices, with "
-        "the pressure integrated over the closed part where kn is given or blocks deform (materials.NAME.young); where "
-        "the joint can crack 5, where it can crush and kn is given 5, in 3D 3, where it is elastic 3, in 3D "
-        "vertices+centre",
+        "of the area of contact, or at its vertices alone, or at its centre as well; section: 16, in 3D 57, with "
+        "which a joint that cracks or is crushed is as strong in bending as its whole section; default: section where "
+        "the joint has tension, cohesion or compression, but for time histories; else 2, in 3D vertices, with the "
+        "pressure integrated over the closed part where kn is given or blocks deform (materials.NAME.young); in time "
+        "histories with tension or cohesion 5, and where it is elastic 3, in 3D vertices+centre",
         examples=[5],
     )
 
@@ -68,9 +69,23 @@ class StiffJoint(CaseModel):
         return self.integrable and not self.asks_for_points
 
     @property
+    def plane_points(self) -> int:
+        """Contact points of a plane joint so stiff that its stiffness drops out; in 3D 3 to 5: with its centre."""
+        return 2
+
+    @property
+    def cracks(self) -> bool:
+        """Whether it cracks or is crushed bit by bit as it bends: it has SECTION points then, but in time histories."""
+        return False
+
+    @property
     def bends(self) -> bool:
         """Whether it opens bit by bit as it bends, and has BENDING_POINTS where its stiffness is a property."""
-        return True
+        return not self.cracks
+
+    def sectional(self, lands: bool = False) -> bool:
+        """Whether it has the points with which it is as strong as its whole section. lands: as in `follows`."""
+        return self.points == "section" or (self.points is None and self.profile is None and self.cracks and not lands)
 
     def follows(self, deforms: bool = False, lands: bool = False) -> bool:
         """Whether its contact points are those that its bending stiffness asks for.
@@ -90,11 +105,13 @@ class StiffJoint(CaseModel):
             return self.points
         if self.follows(deforms, lands):
             return BENDING_POINTS[dimension]
+        if self.sectional(lands):
+            return SECTION
         if dimension == 3:
             return 2
-        return self.plane_points if self.points is None else AREA_POINTS[self.points]
+        return self.plane_points if self.points is None else AREA_POINTS[str(self.points)]
 
     def centred(self, dimension: int, deforms: bool = False, lands: bool = False) -> bool:
         """Whether its contact points are the vertices and the centre of an area. deforms, lands: as in `follows`."""
         asked = self.points == "vertices+centre" or (self.points is None and self.plane_points > 2)
-        return asked and dimension == 3 and not self.follows(deforms, lands)
+        return asked and dimension == 3 and not self.follows(deforms, lands) and not self.sectional(lands)

@@ -45,7 +45,9 @@ def test_cohesion_holds_a_block_that_slides(cohesion):
 def test_shear_strength_that_no_normal_force_changes():
     """Livesley's first case, μ = 0: λ = c A / W, and the reduced domain is the whole one: the load is known."""
     found = solved(
-        flat(friction=0.0, cohesion=800.0, cohesion_residual=800.0), bounds=("lower", "least"), associated_only=False
+        flat(friction=0.0, cohesion=800.0, cohesion_residual=800.0, points=5),
+        bounds=("lower", "least"),
+        associated_only=False,
     )
     assert found.associated.multiplier == pytest.approx(800.0 / (0.2 * WEIGHT), rel=NEAR)
     assert found.lower.reduced_domain == pytest.approx(found.associated.multiplier, rel=1e-5)
