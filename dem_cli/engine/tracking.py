@@ -168,8 +168,8 @@ class JointTracking:
     def _begin_unpressed(self, new: JointArrays, passed: np.ndarray) -> None:
         """Joints of parts that have just passed each other, (n_meetings,) bool, press by what they close from now on.
 
-        How deep corners were inside each other meanwhile is no elastic overlap: nothing did that work. Where there is no
-        closure (engine/rigid_joints.py), in time histories, nobody asks for it.
+        How deep corners were inside each other meanwhile is no elastic overlap: nothing did that work. Time histories,
+        which have no closure (engine/rigid_joints.py), do not ask for it.
         """
         if passed.any():
             parts = self.model.topology.face_parts[new.geometry.faces]

@@ -7,7 +7,7 @@ For joints that are not to fail. Points that meet later were never joined: they 
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 

@@ -16,7 +16,7 @@ force drops at once. Where kn is "auto" the program does not check that.
 from __future__ import annotations
 
 import math
-from typing import Literal, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
