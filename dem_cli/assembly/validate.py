@@ -42,6 +42,7 @@ REMOTE_STRUCTURE = 1e8  # distance from the origin over the size of a typical fr
 SHOWN_MISTAKES = 5  # mistakes of one sort that are reported one by one
 
 
+LIGHTEST = 1e-150  # kg, kg m2: of smaller masses and inertias the squares, and what is divided by them, are no numbers
 NO_SIZE = {  # what is said of a part that is flat
     2: "has no area, or its corners run clockwise",
     3: "has no volume, or its faces look inwards",
@@ -280,7 +281,9 @@ def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
         hit = sorted(set(model.part_blocks[wrong].tolist()))
         found += _first_few([(blocks[i].path, f"block '{blocks[i].id}' {what}") for i in hit])
     inertias = model.inertias.min(axis=1)
-    weightless = ~(np.isfinite(model.masses + model.inertias.max(axis=1)) & (np.minimum(model.masses, inertias) > 0.0))
+    weightless = ~(
+        np.isfinite(model.masses + model.inertias.max(axis=1)) & (np.minimum(model.masses, inertias) > LIGHTEST)
+    )
     if not found:
         for i in np.flatnonzero(weightless)[:1].tolist():
             message = f"block '{blocks[i].id}' has a mass of {model.masses[i]:g} kg, with which nothing can be computed"

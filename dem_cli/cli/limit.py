@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -56,7 +57,7 @@ def command(
     """Failure load of CASE by limit analysis of its rigid blocks, as they stand at the start, and bounds of it."""
     from dem_cli import api
     from dem_cli.engine.properties import joint_properties, law_of
-    from dem_cli.limit.analysis import LEAST, LOWER, require_scalable, taken_as_plane
+    from dem_cli.limit.analysis import LEAST, LOWER, limit_loads, require_scalable, taken_as_plane
     from dem_cli.output.summary import to_json
 
     started = time.perf_counter()
@@ -70,10 +71,11 @@ def command(
         loaded.warnings.append(note)
     bounds = [name for name, wanted in ((LOWER, lower), (LEAST, least)) if wanted]
     with console.Progress(quiet) as bar:
-        found, note = loads_of_start(
-            model, properties, law, heads == "frictionless", associated_only, bounds,
+        find = partial(
+            limit_loads, model, properties, law, heads == "frictionless", associated_only, bounds,
             lambda load, reached: bar.update("no dilation", load, 0.0, None),
         )  # fmt: skip
+        found, note = loads_of_start(model, find)
     loaded.warnings += [note] if note else []
     summary = summarised(loaded, model, found, heads) | {"wall_seconds": time.perf_counter() - started}
     if output is not None:
@@ -82,19 +84,19 @@ def command(
     return code(summary, loaded)
 
 
-def loads_of_start(model: Model, *asked: Any) -> tuple[LimitLoads, str | None]:
-    """Limit analysis as `limit_loads` is asked for it, and what is to be said of gaps of the start.
+def loads_of_start(model: Model, find: Callable[..., LimitLoads]) -> tuple[LimitLoads, str | None]:
+    """Limit analysis by `find(settings=...)`, and what is to be said of gaps of the start.
 
     They stay open, unless nothing carries the dead loads then: those that close like joints are taken as closed.
     """
-    from dem_cli.limit.analysis import closing_gaps, gaps_left_open, limit_loads
+    from dem_cli.limit.analysis import closing_gaps, gaps_left_open
     from dem_cli.limit.associated import FALLS
     from dem_cli.limit.settings import LimitSettings
 
-    found = limit_loads(model, *asked)
+    found = find()
     if found.associated.status == FALLS and (closing := closing_gaps(model)) is not None:
         near, note = closing
-        closed = limit_loads(model, *asked, settings=LimitSettings(touching=near))
+        closed = find(settings=LimitSettings(touching=near))
         if closed.associated.status != FALLS:
             return closed, note
     return found, gaps_left_open(model)

@@ -141,6 +141,7 @@ DAMAGES = {
     "masses are words": ("plane", edited("dem/model/masses", lambda v: v.astype("S8")), "holds |S8, not numbers"),
     "a mass is no number": ("plane", edited("dem/model/masses", first(np.nan)), "/dem/model/masses is not finite"),
     "a place is infinite": ("space", edited("dem/frames/positions", first(np.inf)), "positions is not finite"),
+    "a corner beyond all": ("space", edited("dem/model/vertices", first(1.7e308)), "vertices holds 1.7e+308; products"),
     "a frame is cut off": ("plane", edited("dem/frames/load", lambda v: v[:-1]), "/dem/frames/load has the shape"),
     "an axis more": ("plane", edited("dem/history/load", lambda v: v[:, None]), "/dem/history/load has the shape"),
     "a block too many": ("plane", edited("dem/model/fixed", lambda v: np.append(v, v)), "fixed has the shape"),

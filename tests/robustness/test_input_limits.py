@@ -107,6 +107,7 @@ REFUSED = {
     "loads": (COLUMN + "[[load]]\n" * (MOST_TABLES + 1), "load: 10,001 tables are too many; at most 10,000"),
     "mistakes of what is built": (f"{COLUMN}{LOAD * 600}", "and 100 more mistakes"),
     "mistakes": (COLUMN + "".join(f"x{k} = 1\n" for k in range(600)), "and 100 more mistakes"),
+    "next to no mass": (COLUMN.replace("2000.0", "1e-300"), "has a mass of"),
     "a mass": (COLUMN.replace("2000.0", "5e-324"), "has a mass of"),
     "an arch far away": (
         f'{SPACE}[[structure]]\nkind = "wall"\nblock = [0.5, 0.2, 0.2]\ncourses = 9\nlength = 4.0\n'

@@ -9,6 +9,8 @@ import numpy as np
 from dem_cli.errors import DamagedResults
 from dem_cli.output.layout import NUMBERS, ONE_MORE, WHOLE, Described
 
+MODEL = "/dem/model/"  # what was computed, as the case has it
+OVERFLOWS = 1e150  # whose square is hardly a number; a case has nothing beyond the fifth power of its largest number
 ENDLESS = ("row", "sample")  # axes of what a run that ended in nonsense kept of it: values need not be finite
 
 
@@ -17,6 +19,8 @@ def checked(path: str, values: np.ndarray, said: Described, sizes: Mapping[str, 
     if said.kind == NUMBERS and said.axes[:1] not in [(axis,) for axis in ENDLESS]:
         if not np.isfinite(values).all():
             raise DamagedResults(f"{path} is not finite")
+        if path.startswith(MODEL) and (np.abs(values) > OVERFLOWS).any():
+            raise DamagedResults(f"{path} holds {np.abs(values).max():.3g}; products of such numbers are not finite")
     elif said.kind == WHOLE and len(values):
         _check_numbers(path, values, said, sizes)
     return values
