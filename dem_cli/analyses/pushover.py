@@ -5,11 +5,14 @@ from __future__ import annotations
 from math import ceil, inf, log2
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
 from dem_cli.dynamics.stability import buckles, standing
 from dem_cli.engine.automatic_stiffness import ratio_of
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
+from dem_cli.engine.kinematics import fixed_beside
 from dem_cli.engine.properties import law_of
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
@@ -94,34 +97,23 @@ def _search(job: Job, start: StartBound) -> tuple[FailureLoad, Simulation]:
     """Gravity and the failure search, with geometry that moves where given joints are too soft to freeze it.
 
     That is decided before the search, by elastic displacements at the load that limit analysis allows at most; and
-    after it once more, by those at failure.
+    after it once more, by those at failure. Where some of several structures have gaps that may close, geometry is that
+    of the start unless it is one of these that fails first.
     """
     analysis = job.case.analysis
-    search, sim = FailureLoad(), job.first_simulation()
+    closing = fixed_beside(job.case, job.model)
+    search, sim = FailureLoad(), job.first_simulation() if closing is None else job.simulation("fixed")
     rigid: float | None = None  # what the same blocks carry on stiff joints, or
     searched = False  # at most
     while True:
         track = job.track(sim)
-        moved = 0.0  # smallest edges
-        try:
-            if (status := standing(sim, track, job.budget)) == OK:
-                search.limits = RigidLimits(job, sim)
-                moved = _expected_motion(job, sim, search.limits)
-                if not moved:
-                    near, search.start = find_start(job, sim, search.limits)
-                    wanted = SearchRange(analysis.resolution, analysis.max_load, analysis.step)
-                    load_search = LoadSearch(sim, wanted, job.budget, track, search, buckling(job))
-                    load_search.on_stiff_joints = rigid / sim.live_scale if rigid else inf
-                    load_search.run(near)
-                    _second_history(job, load_search)
-                    moved = search.peak_displacement / sim.smallest if _may_move(job, sim) else 0.0
-            else:
-                search.status = status
-        except SolverError as error:
-            job.warnings.append(str(error))
-            search.end_undecided(job.settings.load_search.widest)
-        except KeyboardInterrupt:
-            search.status = INTERRUPTED
+        moved = _raised(job, sim, track, search, rigid)  # smallest edges
+        if closing is not None and search.status != INTERRUPTED:
+            if not _fails_beside(search, sim, closing):
+                job.warnings.clear()
+                closing, search, sim = None, FailureLoad(), job.first_simulation()
+                continue
+            job.skipped.append("large displacements: what fails first has no gaps that may close")
         again = moved > job.settings.load_search.soft * analysis.resolution
         if not again or search.status == INTERRUPTED:
             if rigid and search.found:
@@ -133,6 +125,45 @@ def _search(job: Job, start: StartBound) -> tuple[FailureLoad, Simulation]:
         rigid, searched = (search.carried, True) if search.found else (_bound_of_the_start(search, start), False)
         job.warnings.clear()
         search, sim = FailureLoad(), job.simulation("large")
+
+
+def _raised(job: Job, sim: Simulation, track: Track, search: FailureLoad, rigid: float | None) -> float:
+    """Raises the load of a simulation from gravity until it fails, into `search`; how far given joints let blocks move
+    before failure, in smallest edges, where that says that geometry has to move, else 0.
+
+    rigid: as in `_search`.
+    """
+    analysis, moved = job.case.analysis, 0.0
+    try:
+        if (status := standing(sim, track, job.budget)) == OK:
+            search.limits = RigidLimits(job, sim)
+            moved = _expected_motion(job, sim, search.limits)
+            if not moved:
+                near, search.start = find_start(job, sim, search.limits)
+                wanted = SearchRange(analysis.resolution, analysis.max_load, analysis.step)
+                load_search = LoadSearch(sim, wanted, job.budget, track, search, buckling(job))
+                load_search.on_stiff_joints = rigid / sim.live_scale if rigid else inf
+                load_search.run(near)
+                _second_history(job, load_search)
+                moved = search.peak_displacement / sim.smallest if _may_move(job, sim) else 0.0
+        else:
+            search.status = status
+    except SolverError as error:
+        job.warnings.append(str(error))
+        search.end_undecided(job.settings.load_search.widest)
+    except KeyboardInterrupt:
+        search.status = INTERRUPTED
+    return moved
+
+
+def _fails_beside(search: FailureLoad, sim: Simulation, closing: np.ndarray) -> bool:
+    """Whether what failed on geometry of the start are other structures than those whose gaps may close, (n_blocks,)
+    bool: until then these stood with open gaps, so that none closed."""
+    before, failing = search.failed_from or search.held, search.failed_state
+    if search.status != OK or not search.found or before is None or failing is None:
+        return False
+    motion = np.sqrt(((failing.bodies.positions - before.bodies.positions) ** 2).sum(axis=1))
+    return bool(motion[closing].max() < sim.settings.mechanism.takes_part * motion.max())
 
 
 def buckling(job: Job) -> Callable[[Simulation], bool]:

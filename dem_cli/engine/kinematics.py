@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.contact.gaps import gap_words, gaps_of_start, wedges_of_start
+from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.engine.properties import joint_properties
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.model.model import Model
+from dem_cli.model.scales import smallest_edge, structures
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -37,6 +39,23 @@ def why_moving(case: Case, model: Model) -> str | None:
         return f"{gap_words(model, gaps)} may close"
     wedges = wedges_of_start(model, joint_properties(case, model, ratio=1.0))  # whatever the stiffness
     return f"{gap_words(model, wedges)} may close at one end" if len(wedges.widths) else None
+
+
+def fixed_beside(case: Case, model: Model) -> np.ndarray | None:
+    """Free blocks of connected structures whose gaps may close, (n_blocks,) bool, where there are others beside them.
+
+    None: nothing moves geometry, or something that is no gap, or every structure has gaps.
+    """
+    profiled = any(joint.profile is not None for joint in case.joints.values())
+    if case.analysis.kinematics != "auto" or profiled or case.imperfection or model.links:
+        return None
+    properties = joint_properties(case, model, ratio=1.0)
+    gaps = gaps_of_start(model)
+    closing = [gaps.blocks[gaps.close], wedges_of_start(model, properties).blocks]
+    joints = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model)).joints
+    label = structures(np.concatenate([joints.blocks, *closing]), model.fixed)
+    moves = np.isin(label, label[np.concatenate(closing)]) & ~model.fixed
+    return moves if moves.any() and not moves[~model.fixed].all() else None
 
 
 def open_gaps_doubt(model: Model) -> str | None:

@@ -8,12 +8,11 @@ from operator import is_
 import numpy as np
 
 from dem_cli.contact.assemble import build_joints
-from dem_cli.contact.corner_meetings import corner_meetings
 from dem_cli.contact.geometry import NarrowPhase, geometry_of, motion_of
 from dem_cli.contact.joints import Faces, JointArrays, JointProperties
 from dem_cli.contact.keys import same_rows
 from dem_cli.contact.memory import carry_memory
-from dem_cli.contact.start import TOUCHING_GAP, bond_touching, close_touching, joints_of_start
+from dem_cli.contact.start import TOUCHING_GAP, bond_touching, close_touching, corner_meetings, joints_of_start
 from dem_cli.engine.settings import DEFAULT, DetectionSettings
 from dem_cli.kernels.fixed_joints import FixedJoints
 from dem_cli.kernels.records import Bodies, Contacts
@@ -168,8 +167,8 @@ class JointTracking:
     def _begin_unpressed(self, new: JointArrays, passed: np.ndarray) -> None:
         """Joints of parts that have just passed each other, (n_meetings,) bool, press by what they close from now on.
 
-        How deep corners were inside each other meanwhile is no elastic overlap: nothing did that work. Time histories,
-        which have no closure (engine/rigid_joints.py), do not ask for it.
+        How deep corners were inside each other meanwhile is no elastic overlap: nothing did that work. Time histories
+        know no closure (engine/rigid_joints.py), and do not ask for it.
         """
         if passed.any():
             parts = self.model.topology.face_parts[new.geometry.faces]

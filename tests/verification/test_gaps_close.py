@@ -263,3 +263,30 @@ def test_energy_of_a_block_that_lands(dimension, height):
     assert summary["status"] == "ok"
     assert summary["largest_displacement"] > height
     assert abs(summary["energy_closure"]) < 1e-4
+
+
+def beside_a_pier(width: float, **analysis) -> dict:
+    """A pier of height 1 that rocks at its width, and two stones far away with a gap of 0.2 mm, which slide at 0.5."""
+    stones = [
+        block("far", rectangle(10.0, -0.2, 12.0, 0.0), fixed=True),
+        block("a", rectangle(10.0, 0.0, 11.0, 0.2)),
+        block("b", rectangle(11.0002, 0.0, 12.0, 0.2)),
+    ]
+    pier = block("pier", rectangle(0.0, 0.0, width, 1.0))
+    settings = {"kind": "pushover", "resolution": RESOLUTION, "follow": 0.0}
+    return tables(GROUND, pier, *stones, friction=0.5, analysis=settings | analysis)
+
+
+def test_gaps_of_another_structure_move_nothing():
+    """What fails first has no gaps: its geometry is that of the start, to the last digit."""
+    summary, _ = solve(beside_a_pier(0.2))
+    assert summary["failure_load"] == solve(beside_a_pier(0.2, kinematics="fixed"))[0]["failure_load"]
+    assert summary["failure_load"] == pytest.approx(0.2, rel=RESOLUTION)
+    assert "large displacements: what fails first has no gaps that may close" in summary["skipped"]
+
+
+def test_gaps_of_the_structure_that_fails_first_close():
+    """The pier would rock at 0.8; the stones slide at 0.5, the first one against the second once the gap is closed."""
+    summary, _ = solve(beside_a_pier(0.8))
+    assert summary["failure_load"] == pytest.approx(0.5, rel=RESOLUTION)
+    assert any("may close" in line for line in summary["skipped"])

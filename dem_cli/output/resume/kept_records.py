@@ -18,8 +18,8 @@ from dem_cli.registration import Registered
 _PLACES = {
     "contact.caps": ("Caps",),
     "contact.chains": ("Chains",),
-    "contact.corner_meetings": ("CornerMeetings",),
     "contact.joints": ("JointArrays",),
+    "contact.start": ("CornerMeetings",),
     "dynamics.coda": ("Ending", "Swings"),
     "dynamics.collapse_criterion": ("CollapsedBlock",),
     "dynamics.snapshots": ("EvenTimes", "Intervals"),

@@ -7,9 +7,8 @@ import pytest
 from engine import block, rectangle, simulation, tables
 from engine.limits import rotated
 
-from dem_cli.contact.corner_meetings import corner_meetings
 from dem_cli.contact.geometry import geometry_of
-from dem_cli.contact.start import bodies_at_rest
+from dem_cli.contact.start import bodies_at_rest, corner_meetings
 from dem_cli.engine.placement import moves
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.kernels.records import HOLD_LOAD
@@ -84,10 +83,12 @@ def test_a_stone_has_a_joint_once_it_has_passed_the_corner(share, passed, dimens
     number, size = sim.model.block_ids.index("over-right"), np.sqrt(2.0 if dimension == 2 else 2.25)
     motion = np.zeros_like(sim.bodies.velocities)
     motion[[number - 1, number], 0] = -share * PASSING * size  # the stone beside it makes room
-    motion[number, dimension - 1] = -1e-7
     moves.push(sim, motion)
     aslant = frozenset(("left", "over-right"))
     assert (aslant in pairs(sim)) is passed
+    motion[:] = 0.0
+    motion[number, dimension - 1] = -1e-7
+    moves.push(sim, motion)
     sim.advance(1, HOLD_LOAD)
     sim.measured()
     own = np.array([frozenset(sim.model.block_ids[i] for i in pair) == aslant for pair in sim.joints.blocks])
@@ -95,6 +96,22 @@ def test_a_stone_has_a_joint_once_it_has_passed_the_corner(share, passed, dimens
     assert pressed.any() == passed
     normals = sim.joints.frames[pressed, :dimension]
     assert normals == pytest.approx(np.tile(np.eye(dimension)[-1], (len(normals), 1)), abs=1e-6)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_joint_of_corners_that_have_passed_begins_without_a_force(dimension):
+    """However deep one is in the other by then: nothing did that work."""
+    sim = simulation(four(dimension), "large")
+    number = sim.model.block_ids.index("over-right")
+    motion = np.zeros_like(sim.bodies.velocities)
+    motion[[number - 1, number], 0] = -1e-3
+    motion[number, dimension - 1] = -1e-5
+    moves.push(sim, motion)
+    own = np.array([{sim.model.block_ids[i] for i in pair} == {"left", "over-right"} for pair in sim.joints.blocks])
+    own = own[sim.joints.owners] & (sim.joints.kn > 0.0)
+    assert sim.measured().gaps[own].min() == pytest.approx(-1e-5, rel=1e-6)
+    sim.advance(1, HOLD_LOAD)
+    assert sim.contacts.normal[own].max() <= 1e-6 * sim.joints.kn[own].max() * 1e-5
 
 
 def test_restored_states_know_which_corners_had_not_passed():
