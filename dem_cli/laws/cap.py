@@ -64,7 +64,7 @@ def capped(law: Law, name: str, column: int) -> Law:
 def check_cap(compression: float | None, tension: float) -> None:
     """Raises KeyProblem where a joint is crushed before it is pulled apart; both strengths in Pa."""
     if compression is not None and compression <= tension:
-        raise KeyProblem(f"{compression:g} Pa must be more than tension = {tension:g} Pa", "compression")
+        raise KeyProblem(f"{compression:g} Pa; must be more than tension = {tension:g} Pa", "compression")
 
 
 def _with_cap(bond: Callable, depth: int, column: int) -> Callable:

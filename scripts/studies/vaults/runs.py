@@ -12,7 +12,7 @@ from studies.solution import Solution, from_tables, solve
 
 DENSITY, GRAVITY = 2000.0, 9.81
 STIFF = {"kn": 1e9, "ks": 4e8}
-BONDED = {"law": "mohr-coulomb", "cohesion": 1e9, "tension": 1e9}
+BONDED = {"law": "mohr-coulomb", "cohesion": 1e9, "tension": 1e9, "points": 3}
 
 
 def solved(structure: dict[str, Any], joint: dict[str, Any], analysis: dict[str, Any], **tables: Any) -> Solution:
