@@ -190,7 +190,7 @@ def _roots(joints: Joints, d: int, closed: np.ndarray | None, gaps: np.ndarray |
         springs = springs * closed[:, None]
     if not len(joints.integrated):
         return diags_array(np.sqrt(springs.ravel())).tocsr()
-    from dem_cli.contact.pressed_stiffness import root_of_stiffness
+    from dem_cli.dynamics.pressed_stiffness import root_of_stiffness
 
     root = root_of_stiffness(joints, _overlaps(joints, closed, gaps)).tocoo()
     springs[:, 0] = 0.0

@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 from engine import block, rectangle, solve, tables
+from oracle.no_tension_joint import Panel
 
 from dem_cli.analyses import bound_beside
 from dem_cli.analyses.bound_beside import Moved, in_words, is_above, status_beside
@@ -33,11 +34,22 @@ WAYS = {
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("kn", ["auto", 1e10])
 def test_the_bound_stands_beside_a_load_of_any_kinematics_control_and_stiffness(way, kn):
-    joints = {"dry": {"friction": 0.6, "kn": kn, "ks": kn}}
+    joints = {"dry": {"friction": 0.6, "kn": kn, "ks": kn} | ({} if kn == "auto" else {"points": 5})}
     summary, _ = solve(pier(joints=joints, analysis={"kind": "pushover", **WAYS[way]}))
     assert summary["status"] == "ok"
     assert summary["limit_analysis"]["associated"] == pytest.approx(0.2, rel=1e-6)
     assert 0.95 * 0.2 < summary["failure_load"] <= 0.2 * 1.002
+    assert not {"no_bound", "above_the_bound"} & summary.keys()
+
+
+@pytest.mark.parametrize("way", ["moving", "curve"])
+def test_a_face_that_presses_in_part_fails_before_its_bound(way):
+    panel = Panel(0.2, 1.0, 2000.0 * 9.81 * 0.2, 1e10, pushed_at=0.5)
+    joints = {"dry": {"friction": 0.6, "kn": panel.kn, "ks": panel.kn}}
+    summary, _ = solve(pier(joints=joints, analysis={"kind": "pushover", **WAYS[way]}))
+    assert summary["status"] == "ok"
+    assert summary["limit_analysis"]["associated"] == pytest.approx(0.2, rel=1e-6)
+    assert summary["failure_load"] == pytest.approx(panel.strength / panel.weight, rel=2e-3)
     assert not {"no_bound", "above_the_bound"} & summary.keys()
 
 
