@@ -80,8 +80,8 @@ class JointProperties(NamedTuple):
     law: np.ndarray  # parameters of the law, (n_named, n_parameters)
     intact: np.ndarray  # what points that touch at the start remember, (n_named, n_scalars)
     layouts: tuple[PointLayout | None, ...]  # where the contact points are; None: at the two ends of the joint
-    spread: np.ndarray  # in space: rigid ones with points at their corners because nobody asked for others, and without
-    # bonds, whose friction has the torsion of a spread pressure (contact/corner_forces.py), (n_named,) bool
+    spread: np.ndarray  # in space: those without bonds or points that a case asks for, whose friction has the torsion
+    # of a spread pressure (contact/corner_forces.py), (n_named,) bool
     rigid: np.ndarray  # whose stiffness is a means and no property: kn = "auto", no block deforms, (n_named,) bool
     pressed: PressedLaw = lambda parameters, overlaps, memory, kn: kn * np.maximum(overlaps, 0.0)
     bonded: bool = False  # whether points lose work across the joint too: it is counted from gap to gap
@@ -144,8 +144,7 @@ class JointProperties(NamedTuple):
 
     def spread_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
         """Whether friction between each pair of blocks (n, 2) has the torsion of a spread pressure, (n,) bool."""
-        acts = self.rigid_between(model, blocks) | self.integrated_between(model, blocks)
-        return self.spread[self.between(model, blocks)] & acts
+        return self.spread[self.between(model, blocks)]
 
     def stiffness_of(self, named: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """kn and ks of joints by name and faces [Pa/m], (n,) each, with what their blocks give way.

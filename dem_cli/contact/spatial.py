@@ -118,6 +118,16 @@ def _on_joints(model: Model, faces: Faces, corners: np.ndarray, found: Meetings,
     return repeated
 
 
+def _mean_arms(found: Meetings, shares: np.ndarray) -> np.ndarray:
+    """Mean distance of the points of each joint from their centre, by their shares [m], (n,)."""
+    starts = found.starts[:-1]
+    owners = np.repeat(np.arange(len(starts)), np.diff(found.starts))
+    totals = np.add.reduceat(shares, starts)
+    centres = np.add.reduceat(shares[:, None] * found.places, starts) / totals[:, None]
+    arms = np.sqrt(((found.places - centres[owners]) ** 2).sum(axis=1))
+    return np.add.reduceat(shares * arms, starts) / totals
+
+
 def points(
     model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: None = None
 ) -> tuple[MovingJoints, SpatialGeometry]:
@@ -127,13 +137,15 @@ def points(
     """
     found = meetings(model, faces, corners)
     lone, areas, shares = found.kinds != FACES, _areas(model, found), _shares(found)
-    outline = np.diff(found.starts)
+    outline, measured = np.diff(found.starts), found.measures[:, TORSION]
     if properties.profiled:
-        named = properties.between(model, model.part_blocks[faces.parts])
+        named, of_corners = properties.between(model, model.part_blocks[faces.parts]), _mean_arms(found, shares)
         found, shares = _with_centres(found, shares, ~lone & properties.centred[named])
         found, shares = _with_rules(found, shares, np.where(lone, 0, properties.along_sides[named]))
+        arms = _mean_arms(found, shares)
+        measured = measured * np.where(lone, 1.0, of_corners / np.where(arms > 0.0, arms, 1.0))
     spread = properties.spread_between(model, model.part_blocks[faces.parts])
-    torsion = np.where(spread, found.measures[:, TORSION], 1.0)
+    torsion = np.where(spread, measured, 1.0)
     joints = joints_of(model, faces, properties, found.starts, areas, shares, torsion, lone)
     geometry = SpatialGeometry(
         keys=faces.faces,

@@ -82,7 +82,9 @@ def joint_properties(
         else _layout(table, case, k in deforming, lands and k not in bent)
         for k, table in enumerate(tables)
     )  # fmt: skip
-    spread = [layout is None and _spreads(table) for layout, table in zip(layouts, tables, strict=True)]
+    spread = [
+        (layout is None and _spreads(table)) or table.integrates for layout, table in zip(layouts, tables, strict=True)
+    ]
     rigid = free[:, 0] & _with_rigid_blocks(names, model, lying, compliance)
     own_rows = _own_rows(tables, laws, columns, _OfEachJoint(names, step, compliance is not None, case.seed))
     law = mixed(tuple(laws))

@@ -85,12 +85,15 @@ def test_points_that_a_case_asks_for_stay_where_they_are():
     assert bounds(case).non_associated.load == pytest.approx(corners, rel=1e-5)
 
 
-def test_given_stiffness_keeps_its_own_points():
-    """Joints with kn are integrated over their face; friction of a pressure that is spread is not theirs twice."""
-    case = turned_by_a_couple(1.0, 1.0)
-    case["joints"]["dry"]["kn"] = 1e9
-    made = scene(case)
-    assert not joint_properties(made.case, made.model).spread.any()
+@pytest.mark.parametrize("kinematics", ["fixed", "large"])
+@pytest.mark.parametrize("ratio", [1.0, 5.0])
+def test_joints_of_a_given_stiffness_twist_as_rigid_ones(ratio, kinematics):
+    """With points over their area in geometry of the start, integrated where it moves: a spread pressure both times."""
+    case = turned_by_a_couple(ratio, 1.0, analysis={"kinematics": kinematics})
+    case["joints"]["dry"] |= {"kn": 1e9, "ks": 4e8}
+    exact = MU * weight(ratio, 1.0) * mean_radius(ratio, 1.0) / ratio
+    assert middle(solve(case)[0]) == pytest.approx(exact, rel=3e-3)
+    assert bounds(case).non_associated.load == pytest.approx(exact, rel=1e-5)
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 37.0, 120.0])
