@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import numpy as np
+from numba.core import config
 
 from dem_cli.kernels.compilation.callees import is_of_kernel
 from dem_cli.kernels.jit import inline, kernel
@@ -38,7 +39,7 @@ def library(made):
 
 
 def test_a_kernel_inside_of_another_is_called_as_it_was_compiled(tmp_path, monkeypatch):
-    monkeypatch.setenv("DEM_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path))  # compiled here, not read from an earlier run
     made = weigh_all._made()
     assert made(NUMBERS) == weigh_all.py_func(NUMBERS)
     text = str(library(made)._final_module)
