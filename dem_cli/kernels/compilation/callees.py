@@ -7,7 +7,6 @@ kernel takes its LLVM code in, optimises it where it stands and is all that is e
 from __future__ import annotations
 
 from typing import Any
-from weakref import WeakSet
 
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
@@ -23,7 +22,7 @@ from numba.core.untyped_passes import InlineClosureLikes, WithLifting
 
 from dem_cli.kernels.compilation.entries import KernelLowering
 
-__all__ = ["CALLEE", "KERNEL", "CalleeCompiler", "comes_from_disk"]
+__all__ = ["CALLEE", "KERNEL", "CalleeCompiler"]
 
 
 class _NoProcess:
@@ -34,41 +33,17 @@ class _NoProcess:
         """Nothing to write to."""
 
 
-class PackageLibrary(JITCodeLibrary):
-    """LLVM code of a function of this package, which is not optimised function by function.
-
-    callees: what is called from here, directly or not; kernels: those among it, which were optimised when they were
-    compiled. LLVM would optimise the largest again in every loop in space, half of the time that these take.
-    """
-
-    callees: dict[JITCodeLibrary, None]
-    kernels: dict[JITCodeLibrary, None]
+class CalleeLibrary(JITCodeLibrary):
+    """LLVM code of a callee with what it calls, as it was written: whoever takes it in optimises it."""
 
     def _optimize_functions(self, ll_module: Any) -> None:
         ll_module.data_layout = self._codegen._data_layout
 
-    def _gather(self) -> None:
-        """What is called from here, each once."""
-        self.callees, self.kernels = {}, {}
+    def finalize(self) -> None:
+        """Takes in what it calls; nothing may be added any more."""
         for library in dict.fromkeys(self._linking_libraries):
             self._reload_init.update(library._reload_init)
-            if is_of_kernel(library):
-                self.kernels[library] = None
-            else:
-                self.callees |= {library: None, **getattr(library, "callees", {})}
-                self.kernels |= getattr(library, "kernels", {})
-
-
-class CalleeLibrary(PackageLibrary):
-    """LLVM code of a callee, as it was written: the kernel takes in all that it calls, and optimises it."""
-
-    def finalize(self) -> None:
-        """Nothing may be added any more."""
-        self._gather()
-        for function in self._final_module.functions:
-            if not function.is_declaration and function.linkage.name == "external":
-                function.linkage = "linkonce_odr"  # as numba has it in the copy that it would make
-        self._shared_module = self._final_module
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
         self._finalize_dynamic_globals()
         self._finalized = True
 
@@ -81,34 +56,6 @@ class CalleeLibrary(PackageLibrary):
     def codegen(self) -> Any:
         """What would run it."""
         return _NoProcess
-
-
-class KernelLibrary(PackageLibrary):
-    """Code of a kernel, optimised with its callees; kernels that it calls come in behind."""
-
-    def finalize(self) -> None:
-        """As numba's own."""
-        self._gather()
-        self._linking_libraries = list(self.callees)
-        super().finalize()
-
-    def _optimize_final_module(self) -> None:
-        super()._optimize_final_module()
-        for library in self.kernels:
-            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
-
-
-_from_disk: WeakSet[JITCodeLibrary] = WeakSet()
-
-
-def is_of_kernel(library: JITCodeLibrary) -> bool:
-    """Whether a library is that of a kernel, compiled here or before."""
-    return isinstance(library, KernelLibrary) or library in _from_disk
-
-
-def comes_from_disk(library: JITCodeLibrary) -> None:
-    """Notes that a library is that of a kernel, which numba reads as one like any other."""
-    _from_disk.add(library)
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
@@ -126,6 +73,13 @@ class CalleePass(FunctionPass):
         state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
         return True
+
+
+class KernelLibrary(JITCodeLibrary):
+    """Code of a kernel, optimised with all that it calls: not function by function before."""
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        ll_module.data_layout = self._codegen._data_layout
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)

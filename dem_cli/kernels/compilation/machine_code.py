@@ -20,7 +20,7 @@ from numba.extending import overload as numba_overload
 from dem_cli.kernels.compilation.atomics import ATOMICS
 from dem_cli.kernels.compilation.bits import BITS
 from dem_cli.kernels.compilation.cache_folder import cache_folder, fingerprint
-from dem_cli.kernels.compilation.callees import CALLEE, KERNEL, CalleeCompiler, comes_from_disk
+from dem_cli.kernels.compilation.callees import CALLEE, KERNEL, CalleeCompiler
 from dem_cli.kernels.compilation.entries import keep_compiled
 from dem_cli.kernels.compilation.numba_setup import UNDER_WAY, set_up_numba
 from dem_cli.kernels.compilation.references import pass_records_by_reference
@@ -93,9 +93,7 @@ class KernelCache(FunctionCache):
         if not UNDER_WAY:
             (_, _, (code, bitcode)), of = found[:2]
             keep_compiled(self._py_func, of, code, parse_bitcode(bitcode))
-        rebuilt = self._impl.rebuild(target_context, found)
-        comes_from_disk(rebuilt.library)
-        return rebuilt
+        return self._impl.rebuild(target_context, found)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """As numba's own, which first gets ready to compile all that it knows: that takes as long as to load numba.
