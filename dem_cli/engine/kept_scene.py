@@ -98,7 +98,7 @@ def _check_rows(sim: Simulation, before: Any, one: Any) -> None:
     _check_starts(joints.starts, len(joints.blocks), len(joints.kn))
     counts = _counts(sim, joints)
     if isinstance(joints, FixedJoints):
-        _same(before.joints[:-1], joints[:-1])
+        _same(before.joints._replace(tiles=joints.tiles), joints)
         _check_tiles(sim, joints)
     elif len(joints.held):
         touching, most = np.where(joints.held < 0, -1 - joints.held, joints.held), np.diff(joints.starts)
