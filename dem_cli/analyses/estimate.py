@@ -15,7 +15,7 @@ from dem_cli.analyses.estimate_cost import cost_of
 from dem_cli.engine.automatic_stiffness import needed_ratio, ratio_of, static_ratio
 from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
 from dem_cli.engine.measures import shares_of_blocks
-from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.properties import integrates_with, joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.engine.simulation import Simulation
 from dem_cli.links.matrices import each
@@ -44,7 +44,7 @@ def describe(case: Case, model: Model) -> Rows:
     scale = 1.0 if tilting else live_scale(model)
 
     def simulation(kinematics: str, ratio: float) -> Simulation:
-        properties = joint_properties(case, model, ratio)
+        properties = joint_properties(case, model, ratio, integrates=integrates_with(case, kinematics))
         sim = Simulation(model, law_of(case), properties, kinematics, scale, tilting, DEFAULT)
         sim.use(1.0)  # masses at the limit of stability
         return sim
@@ -143,8 +143,11 @@ def _joints(case: Case, sim: Simulation) -> Rows:
 
 
 def _points(case: Case, sim: Simulation, named: int) -> str:
-    """How many contact points a plane joint has that takes them from its stiffness."""
+    """What a plane joint has for its stiffness: pressure that is integrated, or so many contact points."""
     table, layout = case.joints[sim.properties.names[named]], sim.properties.layouts[named]
+    own = sim.properties.between(sim.model, sim.joints.blocks)[: len(sim.joints.integrated)] == named
+    if sim.joints.integrated[own].any():
+        return ", pressure integrated over the faces"
     if table.points is not None or layout is None or layout.sides is not None or not table.bends:
         return ""
     why = "kn is given" if table.kn != "auto" else "blocks deform"

@@ -14,7 +14,7 @@ from dem_cli.engine.clock import Clock
 from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
 from dem_cli.engine.measures import closure
 from dem_cli.engine.monitors import Monitors
-from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.properties import integrates_with, joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.track import Track
@@ -84,10 +84,7 @@ class Job:
         return softer
 
     def _compiled(self, kinematics: str, ratio: float) -> Simulation:
-        analysis = self.case.analysis
-        # The failure load of the geometry of the start is that of rigid blocks, and faces close for ever before it.
-        searches = analysis.kind == "pushover" and getattr(analysis, "control", "load") == "load"
-        integrates = kinematics != "fixed" or not searches
+        integrates = integrates_with(self.case, kinematics)
         tilting = getattr(self.case.analysis, "pattern", None) == "tilt"
         return self.clock.compiled(
             lambda: Simulation(

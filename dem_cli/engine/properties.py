@@ -37,6 +37,15 @@ def law_of(case: Case) -> Law:
     return mixed(tuple(laws_of(case)))
 
 
+def integrates_with(case: Case, kinematics: str) -> bool:
+    """Whether the pressure on elastic joints is integrated over their faces in this analysis, with these kinematics.
+
+    Not where a failure load is sought in geometry of the start: it is that of rigid blocks, and faces close for ever.
+    """
+    searches = case.analysis.kind == "pushover" and getattr(case.analysis, "control", "load") == "load"
+    return kinematics != "fixed" or not searches
+
+
 def joint_properties(
     case: Case,
     model: Model,

@@ -174,3 +174,24 @@ def test_a_settlement_that_may_collapse_takes_longer():
     """Of four walls on ground that turns 14 to 45 s where 1.4 s were said."""
     assert "where it collapses" in rows("settlement_portal")["cost"]
     assert "where it collapses" not in rows("wall_21")["cost"]
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ("control = 'displacement'\nfollow = 0.01\n", "4 bed joints, 0 others, pressure integrated over the faces"),
+        (
+            "kinematics = 'fixed'\n",
+            "4 bed joints, 0 others, 5 contact points each (auto): kn is given, so that bending counts",
+        ),
+    ],
+)
+def test_what_a_joint_has_for_its_stiffness(tmp_path, more, said):
+    path = tmp_path / "case.toml"
+    path.write_text(
+        "[materials.stone]\ndensity = 2000.0\n[joints.dry]\nfriction = 0.6\nkn = 1e9\n"
+        "[[structure]]\nkind = 'column'\ncourses = 4\nblock = [1.0, 0.5]\n"
+        f"[analysis]\nkind = 'pushover'\n{more}"
+    )
+    loaded = api.load_case(path)
+    assert dict(describe(loaded.case, api.build_model(loaded)))["joint dry"] == said
