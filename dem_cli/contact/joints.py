@@ -87,6 +87,9 @@ class JointProperties(NamedTuple):
     bonded: bool = False  # whether points lose work across the joint too: it is counted from gap to gap
     integrated: np.ndarray | None = None  # whose pressure is integrated where elastic, (n_named,) bool; None: of none
     compliance: BlockCompliance | None = None  # of the blocks, lumped into their joints; None: all blocks are rigid
+    lands: bool = (
+        False  # whether blocks land on points at the ends of joints: on elastic ones these twist by themselves
+    )
     heads: np.ndarray | None = None  # named joint in the head joints of each, −1: nothing, (n_named,); None: its own
     rows: LawRows | None = None  # of joints whose stiffness or friction is not that of their name; None: as `law`
 
@@ -144,7 +147,8 @@ class JointProperties(NamedTuple):
 
     def spread_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
         """Whether friction between each pair of blocks (n, 2) has the torsion of a spread pressure, (n,) bool."""
-        return self.spread[self.between(model, blocks)]
+        spread = self.spread[self.between(model, blocks)]
+        return spread & self.rigid_between(model, blocks) if self.lands else spread
 
     def stiffness_of(self, named: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """kn and ks of joints by name and faces [Pa/m], (n,) each, with what their blocks give way.

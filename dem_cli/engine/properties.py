@@ -100,7 +100,7 @@ def joint_properties(
     spreads = np.array(spread) & (model.n_modes == 0)
     return JointProperties(
         names, by_material, kn, ks, columns, intact, layouts, spreads, rigid, law.pressed, law.bonded, integrated,
-        compliance, heads, own_rows,
+        compliance, lands, heads, own_rows,
     )  # fmt: skip
 
 
