@@ -184,7 +184,7 @@ def test_a_corner_of_walls_opens_as_one_of_them_settles():
     support = {"block": "along-y", "displacement": [0.0, 0.03, -0.01], "rotation_deg": [-1.5, 0.5, 1.0]}
     summary, _ = solved(settled([*walls, *feet], support))
     state = summary["joint_state"]
-    assert state["open"] > 10
+    assert state["open"] > 8  # of 74: corners that meet are no joints
     assert 0.02 < state["crack_width"]["value"] < 0.06
     assert abs(summary["reweighting"]["sum"]) < 1.0
 
