@@ -143,10 +143,9 @@ def _joints(case: Case, sim: Simulation) -> Rows:
 
 
 def _points(case: Case, sim: Simulation, named: int) -> str:
-    """What a plane joint has for its stiffness: pressure that is integrated, or so many contact points."""
+    """Words for a plane joint whose pressure is integrated, or whose contact points follow from its stiffness."""
     table, layout = case.joints[sim.properties.names[named]], sim.properties.layouts[named]
-    own = sim.properties.between(sim.model, sim.joints.blocks)[: len(sim.joints.integrated)] == named
-    if sim.joints.integrated[own].any():
+    if sim.integrates and sim.joints.integrated[sim.properties.between(sim.model, sim.joints.blocks) == named].any():
         return ", pressure integrated over the faces"
     if table.points is not None or layout is None or layout.sides is not None or not table.bends:
         return ""

@@ -66,7 +66,7 @@ def drawn_bar(
 
 
 def _unlike_bond(name: str, decay: float, element: float, corners: np.ndarray) -> str | None:
-    """What is wrong with a bar that is far stiffer or softer than its bond, or of elements that are far too short.
+    """Words for a bar that is far stiffer than its bond, or that has far too many elements; None: it is neither.
 
     decay: of bond forces along the bar [1/m]; element: length of its elements [m]; corners: of its path [m], (n, d).
     """

@@ -79,13 +79,7 @@ def inner_points(outlines: np.ndarray, starts: np.ndarray, centres: np.ndarray, 
         if count > 0:
             rule = _fan(polygons, centres[alike], IN_FAN if side == SECTION else (side - 1) // 2)
         else:
-            rule = (
-                _diagonals(polygons)
-                if side == LEAST
-                else _scattered(polygons)
-                if side == SECTION
-                else _grid(polygons, side)
-            )
+            rule = RULES[side](polygons) if side in RULES else _grid(polygons, side)
         corners[alike] = 1.0 - rule[1].sum(axis=1)
         found.update(zip(alike.tolist(), zip(*rule, strict=True), strict=True))
     sizes = [len(found[j][1]) if j in found else 0 for j in range(n)]
@@ -113,12 +107,8 @@ def _diagonals(polygons: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _scattered(polygons: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The points of a whole section of parallelograms (m, 4, …) but their corners: places (m, points, …), shares."""
     x, y, shares = section_points()
-    middles, along, up = (
-        polygons.mean(axis=1)[:, None],
-        polygons[:, 1] - polygons[:, 0],
-        polygons[:, 3] - polygons[:, 0],
-    )
-    at = middles + 0.5 * (x[:, None] * along[:, None] + y[:, None] * up[:, None])
+    along, up = polygons[:, 1] - polygons[:, 0], polygons[:, 3] - polygons[:, 0]
+    at = polygons.mean(axis=1)[:, None] + 0.5 * (x[:, None] * along[:, None] + y[:, None] * up[:, None])
     return at, np.tile(shares, (len(polygons), 1))
 
 
@@ -146,6 +136,9 @@ def _grid(polygons: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
     first, along, up = polygons[:, 0], polygons[:, 1] - polygons[:, 0], polygons[:, 3] - polygons[:, 0]
     at = first[:, None] + x[inner, None] * along[:, None] + y[inner, None] * up[:, None]
     return at, np.tile(shares, (len(polygons), 1))
+
+
+RULES = {LEAST: _diagonals, SECTION: _scattered}  # of parallelograms, by points along a side; of others a grid
 
 
 def _fan(polygons: np.ndarray, centres: np.ndarray, m: int) -> tuple[np.ndarray, np.ndarray]:

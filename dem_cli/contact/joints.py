@@ -87,9 +87,7 @@ class JointProperties(NamedTuple):
     bonded: bool = False  # whether points lose work across the joint too: it is counted from gap to gap
     integrated: np.ndarray | None = None  # whose pressure is integrated where elastic, (n_named,) bool; None: of none
     compliance: BlockCompliance | None = None  # of the blocks, lumped into their joints; None: all blocks are rigid
-    lands: bool = (
-        False  # whether blocks land on points at the ends of joints: on elastic ones these twist by themselves
-    )
+    lands: bool = False  # whether blocks land on points at the ends of joints: on elastic ones these twist alone
     heads: np.ndarray | None = None  # named joint in the head joints of each, −1: nothing, (n_named,); None: its own
     rows: LawRows | None = None  # of joints whose stiffness or friction is not that of their name; None: as `law`
 

@@ -127,7 +127,7 @@ class CornerMeetings(NamedTuple):
 
 
 def corner_meetings(model: Model, narrow: AnyNarrowPhase, faces: Faces, bodies: Bodies, reach: float) -> CornerMeetings:
-    """Of pairs of faces at the start: parts that touch within `reach` [m] and have no joint in geometry of the start.
+    """Parts that touch at the start, within `reach` [m], and have no joint in its geometry; faces: pairs that are near.
 
     narrow: of the geometry of the start.
     """

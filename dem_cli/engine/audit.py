@@ -188,7 +188,7 @@ def _leaning_automatically(case: Case, sim: Simulation) -> list[str]:
 
 
 def _leaning(case: Case, sim: Simulation, moved: float | None) -> list[str]:
-    """Where the case asks for geometry that moves nobody has looked for the load of blocks on stiff joints.
+    """Warning of a load on soft joints, where geometry moves because the case says so and stiff ones were not tried.
 
     A block that rocks on a face without tension carries b/h (1 − 2c/3b − hθ/b), which is largest where c = 3hθ: its
     centre has then moved by u = hθ/2, and 6 u/b of the load is lost. Points at the ends of a joint lose u/b alone.

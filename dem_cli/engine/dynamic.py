@@ -57,6 +57,7 @@ class DynamicSimulation(Simulation):
         if len(model.principal_axes):  # inertia is a tensor, which turns with its block
             self.masses[:, model.rotations] = 0.0
         self.masses[:, model.rotations.stop :] = 0.0  # matrices, in StrainRates
+        properties = properties._replace(integrated=None)  # blocks land on the points of their joints
         super().__init__(model, law, properties, "large", settings=settings)
         self.dead_loads = self.loads.dead.copy()  # before velocities have mean spins
         self.takes_back = False  # springs that press at the start go on pressing
@@ -254,7 +255,7 @@ class DynamicSimulation(Simulation):
     def _compiled_shake(self) -> CompiledKernel:
         return compiled_shake(
             self.law, self.properties.profiled, self.damping.in_joints, self.model.dimension, self.kinds_of_links,
-            self.order_within_blocks, self.integrates,
+            self.order_within_blocks,
         )  # fmt: skip
 
     # -- energy ------------------------------------------------------------------------------------

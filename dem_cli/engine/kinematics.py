@@ -52,6 +52,8 @@ def fixed_beside(case: Case, model: Model) -> np.ndarray | None:
     properties = joint_properties(case, model, ratio=1.0)
     gaps = gaps_of_start(model)
     closing = [gaps.blocks[gaps.close], wedges_of_start(model, properties).blocks]
+    if not any(map(len, closing)):
+        return None
     joints = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model)).joints
     label = structures(np.concatenate([joints.blocks, *closing]), model.fixed)
     moves = np.isin(label, label[np.concatenate(closing)]) & ~model.fixed

@@ -107,10 +107,9 @@ def compiled_shake(
     dimension: int = 2,
     links: tuple[str, ...] = (),
     order: int = RIGID,
-    elastic: bool = False,
 ):
     """The stepping loop of time histories, as compiled_advance; compiled at its first call."""
-    flags = {"keeps": damped, "meets": True, "elastic": elastic}
+    flags = {"keeps": damped, "meets": True}
     if order == QUADRATIC:
         forces = make_profiled_forces(law.function, law.bonded, strains=True, bends=True, **flags)
         return make_shake(forces, drift_bent_corners, damped, strains=True, bends=True)

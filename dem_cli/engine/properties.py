@@ -60,8 +60,8 @@ def joint_properties(
 
     step: time step [s] that velocities in a law refer to; infinite where time has no meaning: all motion is slow.
     lands: whether blocks land on each other, so that joints keep the points at their ends; None: in time histories.
-    integrates: whether the pressure on elastic joints is integrated over their faces, else it is sampled at points;
-    where blocks land it always is: a face that takes the blow as a whole does not lose what Housner's block does.
+    integrates: whether the pressure on elastic joints is integrated over their faces. Not where blocks land, in any
+    case: a face that takes the blow as a whole does not lose what Housner's block does.
     """
     names, by_material = joint_table(case)
     heads = joints_in_heads(case)
@@ -84,8 +84,8 @@ def joint_properties(
     deforming = _with_deforming_blocks(model, lying, compliance, np.flatnonzero(bending))
     bent = set(lying[:, np.flatnonzero(bending)].ravel().tolist())  # two points cannot tell how a block bends
     lands = hasattr(case.analysis, "margin") if lands is None else lands
-    spreads_out = integrates and not lands
-    integrated = np.array([spreads_out and table.integrates and k not in bent for k, table in enumerate(tables)])
+    integrates = integrates and not lands
+    integrated = np.array([integrates and table.integrates and k not in bent for k, table in enumerate(tables)])
     layouts = tuple(
         None if integrated[k] and (k in deforming or table.kn != "auto")
         else _layout(table, case, k in deforming, lands and k not in bent)

@@ -17,7 +17,7 @@ import numpy as np
 from dem_cli.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart, swing
 from dem_cli.kernels.deformation.joint_spread import spread_between
 from dem_cli.kernels.deformation.matrices import load_matrix
-from dem_cli.kernels.deformation.pressed_faces import line_gaps
+from dem_cli.kernels.deformation.pressed_faces import line_gaps, rubbing_together
 from dem_cli.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
 from dem_cli.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.kernels.jit import always_inline, inline, kernel, named
@@ -158,8 +158,12 @@ def make_profiled_forces(
                 sums = (nothing, nothing, nothing)
             whole = elastic and not wrong and joints.integrated[joint] == INTEGRATED
             end_low, end_high = gap_low, gap_high
-            if whole:
-                end_low, end_high = line_gaps(gap_low, gap_high)
+            if elastic:
+                low_end = place_end(xa, xb, share_low, gap_low, ta, side_low, a0, corner_low)
+                high_end = place_end(xa, xb, share_high, gap_high, ta, side_high, a1, corner_high)
+                if whole:
+                    end_low, end_high = line_gaps(gap_low + offset, gap_high + offset)
+                    low_end, high_end = rubbing_together(low_end, high_end, end_low, end_high)
             loaded = False
             for p in range(first, last + 1):
                 point = np.uint64(p)
@@ -197,6 +201,8 @@ def make_profiled_forces(
                 if not places and not bonded and gap >= 0.0 and normals[point] == 0.0:
                     continue
                 frame, levers_a, levers_b, place = place_end(xa, xb, share, depth, ta, side, corner_a, corner_b)
+                if whole:
+                    frame, levers_a, levers_b, place = low_end if p == first else high_end
                 if keeps or places:
                     frames[point, 0], frames[point, 1] = frame[0]
                     levers[point, 0], levers[point, 1] = levers_a[0][0], levers_a[1][0]

@@ -85,7 +85,7 @@ class MovingJoints(NamedTuple):
         return np.repeat(np.arange(len(self.blocks)), np.diff(self.starts))
 
     def kept(self) -> MovingJoints:
-        """The same with a copy of what changes as blocks move in space: stiffness of points, torsion, outlines."""
+        """Joints with a copy of their own of what changes as blocks move in space: stiffness, torsion, outlines."""
         names = ("kn", "ks", "torsion", "after", "fans")
         return self._replace(**{name: getattr(self, name).copy() for name in names})
 

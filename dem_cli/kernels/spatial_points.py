@@ -93,7 +93,7 @@ def torsion_now(geometry, joint, count):
 
 @always_inline
 def _perimeter(work, count):
-    """Of the overlap in row 2 of `work` [m]."""
+    """Perimeter of the overlap in row 2 of `work` [m]."""
     around = 0.0
     for k in range(count):
         m = k + 1 if k + 1 < count else 0

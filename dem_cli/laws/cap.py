@@ -38,7 +38,7 @@ def capped(law: Law, name: str, column: int) -> Law:
         return found
 
     def pressed(parameters, overlaps, memory, kn):
-        """Of the law, at most fc A [N]; the rest of the overlap is crushed stone, which is not pulled."""
+        """Normal forces of capped points [N]: of the bond, at most fc A; crushed stone is not pulled."""
         crushed = memory[:, depth]
         normal = np.minimum(law.pressed(parameters, overlaps - crushed, memory, kn), most(parameters, kn))
         return np.where(crushed > 0.0, np.maximum(normal, 0.0), normal)

@@ -22,13 +22,9 @@ class ElasticJoint(StiffJoint):
     """[joints.*] with law = "elastic"."""
 
     integrable: ClassVar[bool] = False
+    plane_points: ClassVar[int] = 3  # these have the bending stiffness of a rectangle
 
     law: Literal["elastic"] = "elastic"
-
-    @property
-    def plane_points(self) -> int:
-        """Three have the bending stiffness of a rectangle."""
-        return 3
 
     @property
     def bends(self) -> bool:

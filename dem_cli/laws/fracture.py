@@ -38,6 +38,7 @@ class FractureJoint(FrictionJoint):
     """[joints.*] with law = "fracture"."""
 
     integrable: ClassVar[bool] = False
+    plane_points: ClassVar[int] = 5  # a joint cracks point by point, in time histories too
 
     law: Literal["fracture"] = "fracture"
     tension: Positive = Field(description="tensile strength ft [Pa], at most cohesion / friction", examples=[0.1e6])
@@ -54,11 +55,6 @@ class FractureJoint(FrictionJoint):
         description="compressive strength fc [Pa], more than the tensile one; default: never crushed",
         examples=[4e6],
     )
-
-    @property
-    def plane_points(self) -> int:
-        """Five, so that it cracks point by point in time histories too."""
-        return 5
 
     @property
     def cracks(self) -> bool:

@@ -36,6 +36,7 @@ class MohrCoulombJoint(FrictionJoint):
     """[joints.*] with law = "mohr-coulomb"."""
 
     integrable: ClassVar[bool] = False
+    plane_points: ClassVar[int] = 5  # a joint cracks point by point, in time histories too
 
     law: Literal["mohr-coulomb"] = "mohr-coulomb"
     cohesion: NonNegative = Field(default=0.0, description="cohesion c [Pa]", examples=[0.1e6])
@@ -60,11 +61,6 @@ class MohrCoulombJoint(FrictionJoint):
         description="compressive strength fc [Pa], more than the tensile one, without dilation; default: never crushed",
         examples=[4e6],
     )
-
-    @property
-    def plane_points(self) -> int:
-        """Five, also where there is no bond that could crack."""
-        return 5
 
     @property
     def cracks(self) -> bool:

@@ -20,7 +20,9 @@ Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
 class StiffJoint(CaseModel):
     """Normal and shear stiffness of a joint per unit area, its profile or the number of its contact points."""
 
-    integrable: ClassVar[bool] = True  # carries no tension and deforms for no good across the joint
+    integrable: ClassVar[bool] = True  # carries no tension, and gives back all work across the joint
+    # Contact points of a plane joint so stiff that its stiffness drops out; in 3D 3 to 5: with its centre.
+    plane_points: ClassVar[int] = 2
 
     if TYPE_CHECKING:
         law: str  # each law's own table declares it, with its name as the only value
@@ -69,11 +71,6 @@ class StiffJoint(CaseModel):
         return self.integrable and not self.asks_for_points
 
     @property
-    def plane_points(self) -> int:
-        """Contact points of a plane joint so stiff that its stiffness drops out; in 3D 3 to 5: with its centre."""
-        return 2
-
-    @property
     def cracks(self) -> bool:
         """Whether it cracks or is crushed bit by bit as it bends: it has SECTION points then, but in time histories."""
         return False
@@ -85,7 +82,7 @@ class StiffJoint(CaseModel):
 
     def sectional(self, lands: bool = False) -> bool:
         """Whether it has the points with which it is as strong as its whole section. lands: as in `follows`."""
-        return self.points == "section" or (self.points is None and self.profile is None and self.cracks and not lands)
+        return self.points == "section" or (self.cracks and not self.asks_for_points and not lands)
 
     def follows(self, deforms: bool = False, lands: bool = False) -> bool:
         """Whether its contact points are those that its bending stiffness asks for.

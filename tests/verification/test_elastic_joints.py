@@ -74,6 +74,25 @@ def test_geometry_that_moves_has_the_same_sections(dimension):
     assert about_y == pytest.approx(exact, rel=5e-3)
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("analysis", [FIXED, MOVING], ids=["fixed", "moving"])
+def test_joints_with_points_beside_them_change_nothing(dimension, analysis):
+    """A bonded pair in the same case has another loop in the plane; sections turn as without it."""
+    alone = row(dimension, [(arm, 0.0) for arm in (0.1, 0.25, 0.45)], analysis)
+    mixed = alone | {
+        "materials": alone["materials"] | {"brick": {"density": 1.0}},
+        "joints": alone["joints"] | {"mortar": JOINT | {"law": "mohr-coulomb", "tension": 1e5, "cohesion": 1e5}},
+        "interface": [{"between": ["brick", "brick"], "joint": "mortar"}],
+    }
+    if dimension == 2:
+        pair = [block("c", rectangle(-9, 0, -8, 1), fixed=True), block("d", rectangle(-9, 1, -8, 2))]
+    else:
+        pair = [box("c", (-9, 0, 0), (-8, 1, 1), fixed=True), box("d", (-9, 0, 1), (-8, 1, 2))]
+    stones = [one | {"material": "stone"} for one in alone["block"]]
+    mixed["block"] = [*stones, *(one | {"material": "brick"} for one in pair)]
+    assert turns_of(mixed) == pytest.approx(turns_of(alone), rel=1e-3, abs=1e-9)  # as near as equilibria are sought
+
+
 def rocking(dimension: int, panel: Panel, depth: float, follow: float) -> dict:
     """A block under its weight and `top` that is pushed at its centre, or at its top where a force stands there."""
     joint = {"friction": 5.0, "kn": panel.kn, "ks": 0.4 * panel.kn}

@@ -93,7 +93,7 @@ def triangle_shares(a, b, c):
 
 @inline
 def _share_in_fan(joints, contacts, first, last):
-    """As `share_pressure`, of an outline."""
+    """Leaves in `contacts.lumped` what the points of an outline get of the pressure on it, as `share_pressure` does."""
     kn, after, fans, gaps, shares = joints.kn, joints.after, joints.fans, contacts.gaps, contacts.lumped
     stiffness, middle, area = 0.0, 0.0, 0.0
     for point in range(first, last):
