@@ -39,11 +39,14 @@ def root_of_stiffness(joints: Joints, overlaps: np.ndarray) -> csr_array:
 
 
 def _alike(joints: Joints, whole: np.ndarray) -> list[np.ndarray]:
-    """Points of these joints along their outlines, those with equally many together, (n, count) each."""
+    """Points of these joints along their outlines, those with equally many together, (n, count) each.
+
+    Faces that may meet, and do not overlap, have none.
+    """
     found: dict[int, list[list[int]]] = {}
     for joint in whole:
-        points = _around(joints, joint)
-        found.setdefault(len(points), []).append(points)
+        if points := _around(joints, joint):
+            found.setdefault(len(points), []).append(points)
     return [np.array(points) for _, points in sorted(found.items())]
 
 

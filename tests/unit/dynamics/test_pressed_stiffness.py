@@ -73,3 +73,14 @@ def test_a_closed_face_has_the_moment_of_its_area(dimension):
     assert shift @ closed.T @ closed @ shift == pytest.approx(KN * depth)
     assert turn @ closed.T @ closed @ turn == pytest.approx(KN * depth / 12.0)
     assert not (opened @ planes).any()
+
+
+def test_faces_that_only_may_meet_have_none():
+    """Blocks of a stack side by side, the upper ones slid off each other: their faces keep room for points."""
+    blocks = [box(f"b{i}{k}", (i, 0, k), (i + 1, 0.6, k + 1), fixed=k == 0) for i in (0, 1) for k in (0, 1)]
+    sim = simulation(tables(*blocks, dimension=3, joints=JOINTS, analysis={"kind": "gravity"}), "large")
+    first = np.flatnonzero((sim.joints.integrated == 1) & (np.diff(sim.joints.starts) > 0))[0]
+    sim.joints.kn[sim.joints.starts[first] : sim.joints.starts[first + 1]] = 0.0
+    root = root_of_stiffness(sim.joints, np.zeros(len(sim.joints.kn)))
+    assert root.shape == (len(sim.joints.kn),) * 2
+    assert not root[sim.joints.starts[first] : sim.joints.starts[first + 1]].toarray().any()
