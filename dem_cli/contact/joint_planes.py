@@ -37,6 +37,8 @@ def in_planes(joints: Joints, gaps: np.ndarray, positions: np.ndarray) -> FixedJ
         integrated=joints.integrated,
         after=joints.after,
         fans=joints.fans,
+        faint=joints.faint,
+        back=joints.back,
         torsion=joints.torsion,
     )
 

@@ -10,7 +10,7 @@ import numpy as np
 from dem_cli.contact.block_compliance import BlockCompliance
 from dem_cli.contact.layout import PointLayout
 from dem_cli.kernels.fixed_joints import NO_SHARES
-from dem_cli.kernels.records import NOTHING, Contacts, FixedJoints, Joints, MovingJoints
+from dem_cli.kernels.records import INTEGRATED, NOTHING, Contacts, FixedJoints, Joints, MovingJoints
 from dem_cli.model.copies import numbered_through, repeated
 from dem_cli.model.model import Model
 
@@ -196,6 +196,21 @@ class JointArrays(NamedTuple):
     geometry: JointGeometry
     contacts: Contacts
 
+    @property
+    def closed(self) -> np.ndarray:
+        """How far the springs of all points are closed [m], (n_points,); those of elastic faces by their own gaps."""
+        kn = self.joints.kn
+        closed = self.contacts.normal / np.where(kn > 0.0, kn, 1.0)
+        if not len(self.joints.integrated):
+            return closed
+        return np.where((self.joints.integrated == INTEGRATED)[self.joints.owners], -self.contacts.gaps, closed)
+
+    @property
+    def pressed(self) -> np.ndarray:
+        """Twice the energy in the springs of all points along their normals [J], (n_points,)."""
+        normal, kn = self.contacts.normal, self.joints.kn
+        return normal * self.closed if len(self.joints.integrated) else normal**2 / np.where(kn > 0.0, kn, 1.0)
+
 
 def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int, elastic: bool = False) -> Contacts:
     """Contacts that carry nothing. elastic: there are faces over which pressure is integrated."""
@@ -235,9 +250,10 @@ def joints_of(
     kn, ks = properties.stiffness_of(named, faces.faces)
     owners = np.repeat(np.arange(len(blocks)), np.diff(starts))
     integrated = properties.integrated_between(model, blocks) & ~lone
-    elastic = {}
+    elastic = dict[str, np.ndarray]()
     if integrated.any():
-        elastic = {"integrated": integrated.astype(np.int8), "after": np.arange(n_points), "fans": np.zeros(n_points)}
+        elastic |= {name: np.zeros(n_points) for name in ("fans", "faint", "back")}
+        elastic |= {"integrated": integrated.astype(np.int8), "after": np.arange(n_points)}
     return MovingJoints(
         blocks=blocks,
         starts=starts,

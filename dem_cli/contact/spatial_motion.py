@@ -27,6 +27,7 @@ from dem_cli.contact.spatial import (
     touching,
 )  # fmt: skip
 from dem_cli.errors import SolverError
+from dem_cli.kernels.deformation.pressed_faces import press_all
 from dem_cli.kernels.records import FACES, Bodies, Contacts, Joints, MovingJoints, SpatialMotion
 from dem_cli.kernels.renewal import LEFT, MOST_LEFT
 from dem_cli.kernels.spatial_forces import measure_spatial, renew_fresh
@@ -172,6 +173,8 @@ def book(old: JointArrays, new: JointArrays, known: np.ndarray, pressed: Pressed
     overlaps = (contacts.closure - contacts.gaps)[fresh]
     parameters = joints.law[joints.owners[fresh]]
     contacts.normal[fresh] = pressed(parameters, overlaps, contacts.memory[fresh], joints.kn[fresh])
+    if len(joints.integrated):
+        press_all(joints, contacts)
     contacts.shear[fresh & (contacts.normal == 0.0)] = 0.0
     change = _held(old) - _held(new)
     contacts.exchanged[:] += change, abs(change)
@@ -180,8 +183,8 @@ def book(old: JointArrays, new: JointArrays, known: np.ndarray, pressed: Pressed
 def _held(of: JointArrays) -> float:
     """In the springs of all points [J]."""
     used = of.joints.kn > 0.0
-    normal, shear = of.contacts.normal[used], of.contacts.shear[used]
-    return 0.5 * float((normal**2 / of.joints.kn[used]).sum() + ((shear**2).sum(axis=1) / of.joints.ks[used]).sum())
+    shear = of.contacts.shear[used]
+    return 0.5 * float(of.pressed[used].sum() + ((shear**2).sum(axis=1) / of.joints.ks[used]).sum())
 
 
 def bonds(model: Model, geometry: SpatialMotion) -> np.ndarray:

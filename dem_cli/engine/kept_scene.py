@@ -20,11 +20,11 @@ Simulation = Any  # that of simulation.py, which imports this file
 _ROWS: dict[str, dict[str, str]] = {  # fields of records by how many rows they have; of those with "?" maybe none
     "MovingJoints": {
         "joints": "blocks law", "points": "frames levers points kn ks", "joints?": "held torsion integrated",
-        "points?": "after fans",
+        "points?": "after fans faint back",
     },
     "FixedJoints": {
         "joints": "blocks law axes anchors arms", "points": "places kn ks", "joints?": "torsion integrated",
-        "points?": "after fans",
+        "points?": "after fans faint back",
     },
     "PlanarGeometry": {"joints": "keys edges scales", "points": "features", "points?": "profile", "joints?": "sunk"},
     "SpatialGeometry": {

@@ -25,7 +25,7 @@ from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.fixed_joints import FixedJoints
 from dem_cli.kernels.jit import CompiledKernel, threads_may_share
-from dem_cli.kernels.records import INTEGRATED, Bodies, Contacts, Joints
+from dem_cli.kernels.records import Bodies, Contacts, Joints
 from dem_cli.laws.law import Law
 from dem_cli.links.link import Springs
 from dem_cli.links.matrices import elastic_energy_of_links, joined
@@ -458,17 +458,10 @@ class Simulation:
 
     def elastic_energy(self) -> float:
         """In the springs of the joints and of links, and in blocks that deform [J]."""
-        contacts, (kn, ks) = self.contacts, self._stiffness()
-        normal = (contacts.normal**2 / kn).sum() if not self.integrates else self._pressed_energy(kn)
-        shear = ((contacts.shear**2).sum(axis=1) / ks).sum()
+        normal = self.tracking.arrays().pressed.sum()
+        shear = ((self.contacts.shear**2).sum(axis=1) / self._stiffness()[1]).sum()
         inside = (self.shape.mode_stiffness * self.bodies.modes**2).sum() if self.model.n_modes else 0.0
         return 0.5 * float(normal + shear + inside) + elastic_energy_of_links(self.links)
-
-    def _pressed_energy(self, kn: np.ndarray) -> float:
-        """Twice that along normals where some pressure is integrated (kernels/deformation/pressed_faces.py) [J]."""
-        contacts, joints = self.contacts, self.joints
-        whole = joints.integrated[joints.owners] == INTEGRATED
-        return float(np.where(whole, -contacts.normal * contacts.gaps, contacts.normal**2 / kn).sum())
 
     def _stiffness(self) -> tuple[np.ndarray, np.ndarray]:
         """Of all contact points along normal and tangents, 1 where there is none; that of fixed joints is kept."""

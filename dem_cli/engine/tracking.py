@@ -117,8 +117,7 @@ class JointTracking:
 
         By more than the elastic overlap there, and by more than what is no width of a joint.
         """
-        pressed = self.joints.kn > 0.0
-        deepest = float((self.contacts.normal[pressed] / self.joints.kn[pressed]).max(initial=0.0))
+        deepest = float(self.arrays().closed.max(initial=0.0))
         passing = np.maximum(self.settings.passing * self.meetings.sizes, self.settings.overlaps * deepest)
         return passing - self.meetings.shifts(bodies)
 

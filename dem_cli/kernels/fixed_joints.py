@@ -31,9 +31,11 @@ class FixedJoints(NamedTuple):
     torsion: np.ndarray = NO_SHARES  # in space: how far from the centre of pressure friction acts, over the distance of
     # its point (contact/corner_forces.py), 1: at the point itself, (n_joints,)
     tiles: JointTiles = NO_TILES  # of these joints, for laws that have a form for lanes
-    integrated: np.ndarray = NOTHING  # this and the next two as MovingJoints has them
+    integrated: np.ndarray = NOTHING  # this and the next four as MovingJoints has them
     after: np.ndarray = NO_JOINTS
     fans: np.ndarray = NO_SHARES
+    faint: np.ndarray = NO_SHARES
+    back: np.ndarray = NO_SHARES
 
     @property
     def owners(self) -> np.ndarray:

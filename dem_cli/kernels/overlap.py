@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from dem_cli.kernels.jit import inline
+from dem_cli.kernels.jit import always_inline, inline
 
 ROUND_OFF = 1e-13  # of the size: a corner so close to an edge is on it
 SAME = 1e-6  # of the size: corners closer to each other, or to the line between their neighbours, are none
@@ -179,6 +179,12 @@ def _turn_at(work, i, k, j):
     return abs(ax * by - ay * bx) / (before * after), before, after
 
 
+@always_inline
+def fades_by(sine):
+    """How much of what is its own a corner of an outline hands to those beside it, by the sine of its turn [-]."""
+    return max(1.0 - sine / FADES, 0.0)
+
+
 @inline
 def fading_areas(work, count, area, gx, gy):
     """Area of each corner of the polygon in row 2, into column SHARE of that row; rows 5 and 6 are its own.
@@ -199,14 +205,14 @@ def fading_areas(work, count, area, gx, gy):
     for k in range(count):
         i, j = k - 1 if k else count - 1, k + 1 if k + 1 < count else 0
         sine, before, after = _turn_at(work, i, k, j)
-        work[5, k, 1] = min(sine / FADES, 1.0)
+        work[5, k, 1] = fades_by(sine)
         work[5, k, 2] = after / (before + after)  # of what it gives, to the corner before it
         if sine < FADES:
             n_fading += 1
     if 0 < n_fading < count:
         for _ in range(HANDS if n_fading > 1 else 1):
             for k in range(count):
-                given = (1.0 - work[5, k, 1]) * work[5, k, 0]
+                given = work[5, k, 1] * work[5, k, 0]
                 if given > 0.0:
                     i, j = k - 1 if k else count - 1, k + 1 if k + 1 < count else 0
                     work[5, k, 0] -= given

@@ -78,6 +78,8 @@ class MovingJoints(NamedTuple):
     integrated: np.ndarray = NOTHING  # 1: pressure is integrated over the face, (n_joints,) int8
     after: np.ndarray = NO_JOINTS  # in space: the point that follows along the outline, (n_points,)
     fans: np.ndarray = NO_SHARES  # and the share of the area between both and their mean, (n_points,)
+    faint: np.ndarray = NO_SHARES  # how much of its pressure a corner hands to those beside it [-], (n_points,)
+    back: np.ndarray = NO_SHARES  # and how much of that to the one before it [-], (n_points,)
 
     @property
     def owners(self) -> np.ndarray:
@@ -86,7 +88,7 @@ class MovingJoints(NamedTuple):
 
     def kept(self) -> MovingJoints:
         """Joints with a copy of their own of what changes as blocks move in space: stiffness, torsion, outlines."""
-        names = ("kn", "ks", "torsion", "after", "fans")
+        names = ("kn", "ks", "torsion", "after", "fans", "faint", "back")
         return self._replace(**{name: getattr(self, name).copy() for name in names})
 
 

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from dem_cli.kernels.deformation.pressed_faces import fan_out, share_pressure
+from dem_cli.kernels.deformation.pressed_faces import fan_out, press_face
 from dem_cli.kernels.jit import always_inline, kernel
 from dem_cli.kernels.records import CROSSING, EDGES, FACES, FIXED_TO_B, INTEGRATED
 from dem_cli.kernels.separation import minus3, row3
@@ -198,9 +198,7 @@ def _press_again(joints, contacts, geometry, bodies, joint, frame, along):
                 joints.points[point, k] = place[k]
                 joints.frames[point, 3 + k], joints.frames[point, 6 + k] = t1[k], t2[k]
     fan_out(joints, joint)
-    share_pressure(joints, contacts, joint)
-    for point in range(joints.starts[joint], joints.starts[joint + 1]):
-        contacts.normal[point] = joints.kn[point] * max(-contacts.lumped[point], 0.0)
+    press_face(joints, contacts, joint)
 
 
 @always_inline

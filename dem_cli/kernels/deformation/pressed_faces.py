@@ -4,13 +4,17 @@ The law of a joint works at contact points, the ends of a line or the corners of
 pressure that has the same resultant and moments, F = ∫ p N dA with N linear from 1 at the point to 0 at the others, as
 the gap at which the spring of the point alone would carry it. In the plane that is a closed form. In space the outline
 is a fan of triangles around the mean of its corners, weighted by their stiffness, which shares what it gets among them;
-a triangle that is partly closed is cut where the gap is zero, exactly. The energy in the springs is ½ Σ F (−g), since
-the pressure is homogeneous in the gaps.
+a triangle that is partly closed is cut where the gap is zero, exactly. A corner at which the outline hardly turns hands
+what it gets to those beside it, as it does with its area (overlap.fading_areas). The energy in the springs is
+½ Σ F (−g), since the pressure is homogeneous in the gaps.
 """
 
 from __future__ import annotations
 
+import math
+
 from dem_cli.kernels.jit import always_inline, inline, kernel
+from dem_cli.kernels.overlap import HANDS, fades_by
 from dem_cli.kernels.records import INTEGRATED, NOT_INTEGRATED
 from dem_cli.kernels.vec import axpy, dot, load, scale
 
@@ -92,13 +96,27 @@ def triangle_shares(a, b, c):
 
 
 @inline
+def _hand_on(joints, shares, first, last):
+    """Corners that are faint give their shares to those beside them."""
+    after, faint, back = joints.after, joints.faint, joints.back
+    for point in range(first, last):
+        corner = after[point]
+        if faint[corner] > 0.0:
+            given = faint[corner] * shares[corner]
+            shares[corner] -= given
+            shares[point] += back[corner] * given
+            shares[after[corner]] += (1.0 - back[corner]) * given
+
+
+@inline
 def _share_in_fan(joints, contacts, first, last):
     """Leaves in `contacts.lumped` what the points of an outline get of the pressure on it, as `share_pressure` does."""
     kn, after, fans, gaps, shares = joints.kn, joints.after, joints.fans, contacts.gaps, contacts.lumped
-    stiffness, middle, area = 0.0, 0.0, 0.0
+    stiffness, middle, area, n_faint = 0.0, 0.0, 0.0, 0
     for point in range(first, last):
         stiffness += kn[point]
         area += fans[point]
+        n_faint += 1 if joints.faint[point] > 0.0 else 0
         middle += kn[point] * gaps[point]
         shares[point] = 0.0
     if area == 0.0:  # fewer than three points, or in one line
@@ -115,6 +133,8 @@ def _share_in_fan(joints, contacts, first, last):
         in_middle += fans[point] * centre
         shares[point] += fans[point] * here
         shares[other] += fans[point] * there
+    for _ in range(HANDS if n_faint > 1 else n_faint):
+        _hand_on(joints, shares, first, last)
     for point in range(first, last):
         if kn[point] > 0.0:
             carried = shares[point] * stiffness / kn[point] + in_middle
@@ -187,6 +207,31 @@ def fan_out(joints, joint):
         area += fans[point]
     for point in range(first, last):
         fans[point] = fans[point] / area if area > 0.0 else 0.0
+    _find_faint(joints, first, last, t1, t2)
+
+
+@inline
+def _find_faint(joints, first, last, t1, t2):
+    """How faint each corner of an outline is, by its turn; t1, t2: along the joint. None is where all would be."""
+    points, after, faint, back = joints.points, joints.after, joints.faint, joints.back
+    zero, strong = (0.0, 0.0, 0.0), 0
+    for point in range(first, last):
+        faint[point] = 0.0
+    for point in range(first, last):
+        corner = after[point]
+        if joints.fans[point] == 0.0 or after[corner] == point:
+            continue
+        here = load(points, corner, 0, zero)
+        came = axpy(-1.0, load(points, point, 0, zero), here)
+        goes = axpy(-1.0, here, load(points, after[corner], 0, zero))
+        ax, ay, bx, by = dot(came, t1), dot(came, t2), dot(goes, t1), dot(goes, t2)
+        before, behind = math.sqrt(ax * ax + ay * ay), math.sqrt(bx * bx + by * by)
+        faint[corner] = fades_by(abs(ax * by - ay * bx) / (before * behind)) if before * behind > 0.0 else 1.0
+        back[corner] = behind / (before + behind) if before + behind > 0.0 else 0.5
+        strong += 1 if faint[corner] == 0.0 else 0
+    if strong == 0:
+        for point in range(first, last):
+            faint[point] = 0.0
 
 
 @kernel
@@ -195,3 +240,20 @@ def fan_out_all(joints):
     for joint in range(joints.blocks.shape[0]):
         if joints.integrated[joint] == INTEGRATED:
             fan_out(joints, joint)
+
+
+@inline
+def press_face(joints, contacts, joint):
+    """Normal forces of the points of a face that is integrated, by the gaps that they have."""
+    share_pressure(joints, contacts, joint)
+    for point in range(joints.starts[joint], joints.starts[joint + 1]):
+        contacts.normal[point] = joints.kn[point] * max(-contacts.lumped[point], 0.0)
+
+
+@kernel
+def press_all(joints, contacts):
+    """Normal forces of all faces in space that are integrated, by the gaps that they have and the outlines of now."""
+    for joint in range(joints.blocks.shape[0]):
+        if joints.integrated[joint] == INTEGRATED:
+            fan_out(joints, joint)
+            press_face(joints, contacts, joint)

@@ -1,0 +1,72 @@
+"""Pressure on outlines that have corners at which they hardly turn: it is all there, and so is the friction of it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from engine import simulation, steps
+from scipy.spatial.transform import Rotation
+from studies.space.structures import box, tables
+
+from dem_cli.engine.placement import moves
+from dem_cli.engine.simulation import Simulation
+from dem_cli.geometry.rotation import quaternions
+
+KN, DEEP, MU = 1e9, 1e-5, 0.6
+
+
+def turned_pair(yaw: float, tilt: float = 0.0, shift: float = 0.0) -> Simulation:
+    """A cube of 1 m that is pressed into a fixed one below it by DEEP, turned about the vertical."""
+    case = tables(box("low", (0, 0, -1), (1, 1, 0), fixed=True), box("top", (0, 0, 0), (1, 1, 1)), friction=MU)
+    case |= {"joints": {"dry": {"friction": MU, "kn": KN, "ks": KN}}, "analysis": {"kind": "gravity"}}
+    sim = simulation(case, "large")
+    sim.bodies.positions[1] += [shift, 0.0, -DEEP]
+    sim.bodies.orientations[1] = quaternions(Rotation.from_rotvec([0.0, tilt, yaw]).as_rotvec()[None])[0]
+    moves.find_faces(sim)
+    stay(sim)
+    return sim
+
+
+def stay(sim: Simulation) -> None:
+    """A step in which no block moves."""
+    sim.loads.inverse_masses[:], sim.bodies.velocities[:] = 0.0, 0.0
+    steps(sim, 1)
+
+
+@pytest.mark.parametrize("yaw", [0.0, 1e-4, 1e-3, 0.02, 0.04, 0.2])
+@pytest.mark.parametrize("tilt", [0.0, 2e-5, 1e-4])
+def test_corners_that_hardly_turn_hand_their_pressure_on(yaw, tilt):
+    """Corners where two edges cross at the angle of the yaw have next to no stiffness, and no more force than it."""
+    sim = turned_pair(yaw, tilt)
+    used = sim.joints.kn > 0.0
+    area = sim.joints.kn[used].sum() / KN
+    assert area == pytest.approx(2.0 / (1.0 + np.sin(yaw) + np.cos(yaw)), rel=1e-4)  # of two squares about one centre
+    closed = sim.contacts.normal[used] / sim.joints.kn[used]
+    deepest = DEEP + 0.5 * np.tan(tilt)
+    assert closed.max() < 1.5 * deepest
+    if tilt == 0.0:
+        assert sim.contacts.normal.sum() == pytest.approx(KN * area * DEEP, rel=1e-9)
+
+
+@pytest.mark.parametrize("yaw", [0.0, 1e-3, 0.02])
+def test_the_same_faces_found_anew_make_no_energy(yaw):
+    sim = turned_pair(yaw, 1e-4)
+    before, force, made = sim.elastic_energy(), sim.contacts.normal.sum(), sim.contacts.exchanged.copy()
+    for _ in range(3):
+        moves.find_faces(sim)
+        assert sim.elastic_energy() == pytest.approx(before, rel=1e-9)
+        assert sim.contacts.normal.sum() == pytest.approx(force, rel=1e-9)
+        stay(sim)
+        assert sim.elastic_energy() == pytest.approx(before, rel=1e-9)
+    assert abs(sim.contacts.exchanged - made).max() < 1e-9 * before
+
+
+@pytest.mark.parametrize("yaw", [0.0, 1e-3, 0.02])
+def test_all_of_the_pressure_rubs(yaw):
+    """Slid by twenty times the slip that friction needs: μ N, whatever corners the outline has."""
+    sim = turned_pair(yaw)
+    for _ in range(20):
+        sim.bodies.velocities[1, 0] = MU * DEEP
+        steps(sim, 1)
+    rubs = np.hypot(*sim.contacts.shear.T).sum()
+    assert rubs == pytest.approx(MU * sim.contacts.normal.sum(), rel=1e-6)
