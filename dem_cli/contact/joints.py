@@ -197,13 +197,18 @@ class JointArrays(NamedTuple):
     contacts: Contacts
 
     @property
+    def whole(self) -> np.ndarray:
+        """Which points are those of faces over which pressure is integrated, (n_points,) bool."""
+        if not len(self.joints.integrated):
+            return np.zeros(len(self.joints.kn), bool)
+        return (self.joints.integrated == INTEGRATED)[self.joints.owners]
+
+    @property
     def closed(self) -> np.ndarray:
         """How far the springs of all points are closed [m], (n_points,); those of elastic faces by their own gaps."""
         kn = self.joints.kn
         closed = self.contacts.normal / np.where(kn > 0.0, kn, 1.0)
-        if not len(self.joints.integrated):
-            return closed
-        return np.where((self.joints.integrated == INTEGRATED)[self.joints.owners], -self.contacts.gaps, closed)
+        return np.where(self.whole, -self.contacts.gaps, closed) if len(self.joints.integrated) else closed
 
     @property
     def pressed(self) -> np.ndarray:

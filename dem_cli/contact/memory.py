@@ -13,9 +13,9 @@ def carry_memory(narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArray
     """Gives the points of `new` what the same points of `old` remember, and their stiffness.
 
     A point is the same when its key is. Where a corner turned over to its other face, the point of the same two blocks
-    that is nearest takes over. properties: their law gives normal forces of new points by their overlap, and where it
-    is bonded, points go on from the gap that their forces belong to, that of the step before: else the next step would
-    find other forces at the same gap, and book their change as lost.
+    that is nearest takes over. properties: their law gives normal forces of new points by their overlap. Where it is
+    bonded, and on elastic faces, points go on from the gap that their forces belong to, that of the step before: else
+    the next step would find other forces at the same gap, and book their change as lost.
     """
     match = same_rows(old.geometry.keys, new.geometry.keys)
     points = _same_points(old, new, match)
@@ -29,9 +29,9 @@ def carry_memory(narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArray
     if len(orphans) and len(newborn):
         _adopt(narrow, old, new, orphans, newborn)
     new.contacts.exchanged[:] = old.contacts.exchanged
+    goes_on = target if properties.bonded else target[new.whole[target]]
+    new.contacts.gaps[goes_on] = old.contacts.gaps[points[goes_on]]
     narrow.book(old, new, points >= 0, properties.pressed)
-    if properties.bonded:
-        new.contacts.gaps[target] = old.contacts.gaps[points[target]]
 
 
 def _same_points(old: JointArrays, new: JointArrays, match: np.ndarray) -> np.ndarray:

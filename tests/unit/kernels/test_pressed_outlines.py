@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from engine import simulation, steps
+from engine import block, rectangle, simulation, steps
+from engine import tables as plane
 from scipy.spatial.transform import Rotation
 from studies.space.structures import box, tables
 
@@ -59,6 +60,29 @@ def test_the_same_faces_found_anew_make_no_energy(yaw):
         stay(sim)
         assert sim.elastic_energy() == pytest.approx(before, rel=1e-9)
     assert abs(sim.contacts.exchanged - made).max() < 1e-9 * before
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_faces_found_on_the_way_go_on_from_the_step_before(dimension):
+    """Forces belong to gaps of before the last motion: with those of after it the books would lose that way."""
+    if dimension == 3:
+        sim = turned_pair(0.0, 2e-5)
+    else:
+        blocks = [block("low", rectangle(0, -1, 1, 0), fixed=True), block("top", rectangle(0, 0, 1, 1))]
+        joints, gravity = {"dry": {"friction": MU, "kn": KN, "ks": KN}}, {"kind": "gravity"}
+        sim = simulation(plane(*blocks, joints=joints, analysis=gravity), "large")
+        sim.bodies.positions[1, 1] -= DEEP
+        moves.find_faces(sim)
+        stay(sim)
+    sim.loads.inverse_masses[:] = 0.0
+    sim.bodies.velocities[1, dimension - 1] = -0.3 * DEEP
+    steps(sim, 1)  # blocks move behind the forces
+    before, made = sim.elastic_energy(), sim.contacts.exchanged.copy()
+    moves.find_faces(sim)
+    assert sim.elastic_energy() == pytest.approx(before, rel=1e-9)
+    assert abs(sim.contacts.exchanged - made).max() < 1e-9 * before
+    stay(sim)
+    assert sim.contacts.normal.sum() == pytest.approx(KN * 1.3 * DEEP, rel=1e-4)
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1e-3, 0.02])
