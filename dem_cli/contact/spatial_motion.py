@@ -31,7 +31,8 @@ from dem_cli.kernels.deformation.pressed_faces import press_all
 from dem_cli.kernels.records import FACES, Bodies, Contacts, Joints, MovingJoints, SpatialMotion
 from dem_cli.kernels.renewal import LEFT, MOST_LEFT
 from dem_cli.kernels.spatial_forces import measure_spatial, renew_fresh
-from dem_cli.kernels.spatial_points import LOCAL, classify
+from dem_cli.kernels.spatial_points import KS, LOCAL, classify
+from dem_cli.kernels.spatial_points import LONE as LONE_AREA
 from dem_cli.model.block_measures import median
 from dem_cli.model.model import Model
 
@@ -164,6 +165,32 @@ def take_over(old: JointArrays, new: JointArrays, match: np.ndarray, known: np.n
             carry(old, new, now, source)
             for name in ("slip", "memory", "closure"):
                 getattr(new.contacts, name)[now] = getattr(old.contacts, name)[source]
+    _soften(old, new, match)
+
+
+def _soften(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
+    """An edge on a face goes on as soft as the strip over which an elastic face pressed before they turned so far.
+
+    That strip is narrow and deep: on the area of a lone point the same overlap would push a hundred times as much.
+    """
+    joints, contacts, scales = new.joints, new.contacts, new.geometry.scales
+    edged = np.flatnonzero((match >= 0) & (new.geometry.kinds != FACES))
+    before = match[edged]
+    soft = old.geometry.scales[before, LONE_AREA] / scales[edged, LONE_AREA]
+    anew = (old.geometry.kinds[before] == FACES) & old.whole[old.joints.starts[before]]
+    for k, joint in enumerate(edged):
+        if not anew[k] and soft[k] == 1.0:
+            continue
+        at = slice(joints.starts[joint], joints.starts[joint + 1])
+        if anew[k]:
+            force = joints.kn[at] * np.maximum(-contacts.gaps[at], 0.0)
+            push = old.contacts.normal[old.joints.starts[before[k]] : old.joints.starts[before[k] + 1]].sum()
+            soft[k] = push / force.sum() if 0.0 < push < force.sum() else 1.0
+            contacts.normal[at] = force
+        joints.kn[at] *= soft[k]
+        contacts.normal[at] *= soft[k]
+        scales[joint, LONE_AREA] *= soft[k]
+        scales[joint, KS] /= soft[k]  # along the face nothing gets softer
 
 
 def book(old: JointArrays, new: JointArrays, known: np.ndarray, pressed: PressedLaw) -> None:

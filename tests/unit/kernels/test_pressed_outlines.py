@@ -85,6 +85,28 @@ def test_faces_found_on_the_way_go_on_from_the_step_before(dimension):
     assert sim.contacts.normal.sum() == pytest.approx(KN * 1.3 * DEEP, rel=1e-4)
 
 
+def lean(sim: Simulation, angle: float, sunk: float) -> None:
+    """The cube stands on its edge at this angle, `sunk` deep, away from all rims of the face below."""
+    turned = Rotation.from_rotvec([0.0, angle, 0.0])
+    lowest = turned.apply(np.array(list(np.ndindex(2, 2, 2))) - 0.5)[:, 2].min()
+    sim.bodies.positions[1] = [0.5, 0.5, -sunk - lowest]
+    sim.bodies.orientations[1] = quaternions(turned.as_rotvec()[None])[0]
+    moves.find_faces(sim)
+    stay(sim)
+
+
+def test_an_edge_goes_on_as_soft_as_the_strip_that_was_pressed():
+    """From 30° on the two faces look at each other no more; the overlap of the strip is not that of a stiff edge."""
+    sim = turned_pair(0.0)
+    lean(sim, np.radians(29.9), DEEP)
+    before, force = sim.elastic_energy(), sim.contacts.normal.sum()
+    assert force == pytest.approx(KN * DEEP**2 / (2.0 * np.tan(np.radians(29.9))), rel=0.15)
+    for angle in (30.1, 31.0, 30.5):
+        lean(sim, np.radians(angle), DEEP)
+        assert sim.contacts.normal.sum() == pytest.approx(force, rel=1e-3)
+        assert sim.elastic_energy() < 1.6 * before  # a spring that is a line has a half of it where a strip has a third
+
+
 @pytest.mark.parametrize("yaw", [0.0, 1e-3, 0.02])
 def test_all_of_the_pressure_rubs(yaw):
     """Slid by twenty times the slip that friction needs: μ N, whatever corners the outline has."""
