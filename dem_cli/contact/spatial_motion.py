@@ -6,6 +6,8 @@ of contact/geometry.py; what does not depend on motion is that of contact/spatia
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
 from dem_cli.contact.area_rules import LEAST
@@ -173,11 +175,12 @@ def _soften(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
 
     That strip is narrow and deep: on the area of a lone point the same overlap would push a hundred times as much.
     """
-    joints, contacts, scales = new.joints, new.contacts, new.geometry.scales
-    edged = np.flatnonzero((match >= 0) & (new.geometry.kinds != FACES))
+    was, now = cast(SpatialMotion, old.geometry), cast(SpatialMotion, new.geometry)
+    joints, contacts, scales = new.joints, new.contacts, now.scales
+    edged = np.flatnonzero((match >= 0) & (now.kinds != FACES))
     before = match[edged]
-    soft = old.geometry.scales[before, LONE_AREA] / scales[edged, LONE_AREA]
-    anew = (old.geometry.kinds[before] == FACES) & old.whole[old.joints.starts[before]]
+    soft = was.scales[before, LONE_AREA] / scales[edged, LONE_AREA]
+    anew = (was.kinds[before] == FACES) & old.whole[old.joints.starts[before]]
     for k, joint in enumerate(edged):
         if not anew[k] and soft[k] == 1.0:
             continue
