@@ -10,6 +10,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from dem_cli.contact.gaps import gaps_of_start
 from dem_cli.engine import measures
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.errors import UsageError
@@ -70,6 +71,37 @@ class StartBound:
         if loads.associated.upper is None:
             self.why_not = f"limit analysis says: {loads.associated.status}"
         return loads
+
+    def follow_path(self, search: FailureLoad, sim: Simulation) -> None:
+        """Gives a search in geometry that moves the load of the zero-dilation path of the start as a second history.
+
+        Only where nothing but the way of loading parts them: joints as stiff as dem chooses, no gaps that close. What
+        blocks carry below it because they move is no other history: then the search is left as it is.
+        """
+        job, low, resolution = self.job, search.low, self.job.case.analysis.resolution
+        if not (search.found and low) or self.asked or not _differs_by_its_history(job, sim):
+            return
+        loads = self.loads
+        if (
+            loads is None
+            or loads.associated.upper is None
+            or abs(loads.associated.upper - low) <= resolution * abs(low)
+        ):
+            return
+        from dem_cli.limit.analysis import with_path
+
+        job.clock.progress("limit analysis", 0.0, 0.0, None)
+        self.loads = loads = with_path(loads, job.settings.limit)
+        path = loads.non_associated
+        if path is not None and path.load is not None and path.finished and path.load <= low * (1.0 + resolution):
+            search.path_of_start = path.load
+
+
+def _differs_by_its_history(job: Job, sim: Simulation) -> bool:
+    """Whether a failure load in geometry that moves is that of stiff joints with friction alone and without gaps."""
+    if sim.kinematics == "fixed" or sim.properties.given or sim.properties.rough or sim.law.bonded:
+        return False
+    return not (job.case.imperfection or gaps_of_start(job.model).close.any())
 
 
 def beside(job: Job, search: FailureLoad, sim: Simulation, start: StartBound) -> dict[str, Any]:

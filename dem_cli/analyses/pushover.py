@@ -46,6 +46,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     sims = [sim]
     found: dict[str, Any] = {"failure_mode": None, "displacement_at_failure": None}
     track = job.track(sim)
+    start.follow_path(search, sim)
     resolution = case.analysis.resolution
     job.warnings += doubts(search, resolution, load_range(search, resolution))
     if search.status == OK:

@@ -139,6 +139,22 @@ def limit_loads(
     return _with_bounds(found, strength, left, bounds, settings)
 
 
+def with_path(found: LimitLoads, settings: LimitSettings) -> LimitLoads:
+    """The same with the load of joints that do not dilate, where it can be another: something slides in the mechanism.
+
+    As it was where the path does not apply: links, strength beside friction, no dead loads, or too many blocks for it.
+    """
+    structure, associated = found.structure, found.associated
+    blocks, dimension = largest_structure(structure.joints.blocks, structure.model.fixed), structure.model.dimension
+    if associated.upper is None or structure.links or not structure.dead.any() or settings.too_large(blocks, dimension):
+        return found
+    if not slides(structure, found.friction, associated, settings.associated):
+        return found
+    begun = time.perf_counter()
+    path = _path(structure, found.friction, associated, lambda load, reached: None, settings)
+    return found._replace(non_associated=path, path_seconds=time.perf_counter() - begun)
+
+
 def _require_known(model: Model, bounds: Collection[str]) -> None:
     """Bounds of joints that do not dilate have one shear force per joint: in space its points slide each their way."""
     if bounds and (model.dimension not in BOUNDED or model.links):

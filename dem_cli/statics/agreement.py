@@ -15,7 +15,7 @@ from dem_cli.statics.warm_start import CURVE
 from dem_cli.statics.warm_start import PATH as AT_PATH
 
 RAISED, IN_LARGE_STEPS, PATH, CREEP = "raised from gravity", "in larger steps", "zero-dilation path", "creep"
-FROM_CURVE = "displacement control"
+FROM_CURVE, PATH_OF_START = "displacement control", "zero-dilation path of the start"
 HOLDS = 2e-4  # of the bound, that it may lie outside a bracket that holds it: failure is shown a little above
 LIMIT = "limit analysis"  # where nothing slides in its mechanism: then rigid blocks carry its load on any history
 
@@ -23,9 +23,7 @@ LIMIT = "limit analysis"  # where nothing slides in its mechanism: then rigid bl
 class History(NamedTuple):
     """A way from gravity to failure, and the load that it ends at; multiplier as users know it."""
 
-    method: (
-        str  # RAISED, FROM_CURVE, IN_LARGE_STEPS, PATH, CREEP or LIMIT; PATH as well where a search began at its end
-    )
+    method: str  # one of the names above; PATH as well where a search began at its end
     load: float
     finished: bool  # False: at least this load
 
@@ -61,6 +59,8 @@ def histories(search: FailureLoad) -> list[History]:
     path = limits.path if way != PATH and limits is not None and limits.followed else None
     if path is not None and path.load is not None:
         found.append(History(PATH, path.load, path.finished))
+    if search.path_of_start is not None:
+        found.append(History(PATH_OF_START, search.path_of_start, True))
     if limits is not None and search.bound is not None and not limits.slides:
         found.append(History(LIMIT, search.bound, True))
     if search.crept_beyond and search.crept is not None:
@@ -95,6 +95,7 @@ def _at_least(history: History) -> str:
 _BY = {
     IN_LARGE_STEPS: "larger steps",
     PATH: "the zero-dilation path",
+    PATH_OF_START: "the zero-dilation path in the geometry of the start",
     LIMIT: "limit analysis without any sliding",
     CREEP: "a creep that came to rest",
 }

@@ -73,6 +73,35 @@ def test_no_bound_is_said_once_and_is_no_warning():
     assert [text for label, text in answer_rows(summary) if label == "no bound"] == [summary["no_bound"]]
 
 
+def columns(kinematics: str, number: int = 2) -> dict:
+    """Columns of 0.4 × 1.25 m side by side: one turns over at 0.32, all of them together hold on to each other."""
+    height = [0.25 * k for k in range(6)]
+    blocks = [
+        block(f"b{i}{k}", rectangle(0.4 * i, height[k], 0.4 * (i + 1), height[k + 1]))
+        for i in range(number)
+        for k in range(5)
+    ]
+    return tables(BASE, *blocks, friction=0.4, analysis={"kind": "pushover", "kinematics": kinematics})
+
+
+def test_blocks_that_move_are_beside_the_zero_dilation_path_of_the_start():
+    """As they turn the columns wedge by θ² b / 2, and friction holds them: another history, up to the bound."""
+    summary, _ = solve(columns("large"))
+    lowest = 0.4 / 1.25
+    assert summary["limit_analysis"]["non_associated"] == pytest.approx(lowest, rel=1e-3)
+    assert lowest < summary["failure_load"] <= 1.002 * summary["limit_analysis"]["associated"]
+    assert summary["load_range"]["lowest"] == pytest.approx(lowest, rel=1e-3)
+    assert any("in the geometry of the start" in text for text in summary["warnings"])
+
+
+@pytest.mark.parametrize("more", [{"kinematics": "fixed"}, {"number": 1, "kinematics": "large"}])
+def test_no_second_history_is_looked_for_where_there_is_one_or_nothing_slides(more):
+    summary, _ = solve(columns(**more))
+    assert summary["failure_load"] == pytest.approx(0.32, rel=2e-3)
+    assert summary["load_range"] is None
+    assert not any("in the geometry of the start" in text for text in summary["warnings"])
+
+
 def test_a_load_above_its_bound_is_by_more_than_the_resolution():
     assert not is_above(0.2411, 0.2410757, 0.002)
     assert is_above(0.2420, 0.2410757, 0.002)

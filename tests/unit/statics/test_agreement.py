@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from dem_cli.statics.agreement import CREEP, PATH, doubts, histories, load_range, percent, unique
+from dem_cli.statics.agreement import CREEP, PATH, PATH_OF_START, doubts, histories, load_range, percent, unique
 
 RESOLUTION = 0.002
 
@@ -17,7 +17,7 @@ def search(path: float, finished: bool = True, bound: float = 1.0, slides: bool 
     return SimpleNamespace(
         start={},
         found=True, low=0.36, high=0.3607, carried=0.36, wide=False, earlier=None, limits=limits, bound=bound,
-        crept_beyond=False, crept=None,
+        crept_beyond=False, crept=None, path_of_start=None,
     )  # fmt: skip
 
 
@@ -56,6 +56,17 @@ def test_load_raised_beyond_an_unfinished_path_is_one_history_alone(path, finish
     raised = search(path, finished, slides=True)
     raised.start = {"kind": kind}
     assert any("no second history" in word for word in doubts(raised, RESOLUTION, None)) is said
+
+
+def test_path_of_the_start_is_a_second_history_of_blocks_that_move():
+    moving = search(0.3602)
+    moving.limits, moving.bound, moving.path_of_start = None, None, 0.33
+    assert histories(moving)[1].summary() == {"method": PATH_OF_START, "load": 0.33, "finished": True}
+    found = load_range(moving, RESOLUTION)
+    assert (found["lowest"], found["highest"]) == (0.33, 0.36)
+    assert "0.33 by the zero-dilation path in the geometry of the start" in doubts(moving, RESOLUTION, found)[0]
+    moving.path_of_start = 0.3603
+    assert load_range(moving, RESOLUTION) is None
 
 
 def test_shares_are_written_in_full():
