@@ -26,7 +26,7 @@ from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad,
 from dem_cli.statics.failure_load import LoadSearch
 from dem_cli.statics.mechanism import describe, moved_blocks
 from dem_cli.statics.rigid_limits import RigidLimits
-from dem_cli.statics.warm_start import GRAVITY, find_start
+from dem_cli.statics.warm_start import GRAVITY, IMPLICIT, find_start
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -205,6 +205,8 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
     """
     search, resolution = load_search.answer, job.case.analysis.resolution
     if not search.found or search.limits is None or at_the_bound(search, resolution) or search.limits.too_large:
+        return
+    if search.start["kind"] == IMPLICIT:  # steps under load: it is a history of small steps
         return
     path = search.limits.path
     if path is None:

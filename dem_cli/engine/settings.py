@@ -21,6 +21,7 @@ from dem_cli.engine.dynamic_settings import (
 )
 from dem_cli.engine.static_settings import (
     DisplacementControlSettings,
+    ImplicitHistorySettings,
     LoadSearchSettings,
     MechanismSettings,
     PostPeakSettings,
@@ -169,6 +170,7 @@ class Settings:
     proof: ProofSettings = field(default_factory=ProofSettings)
     stability: StabilitySettings = field(default_factory=StabilitySettings)
     load_search: LoadSearchSettings = field(default_factory=LoadSearchSettings)
+    implicit_history: ImplicitHistorySettings = field(default_factory=ImplicitHistorySettings)
     warm_start: WarmStartSettings = field(default_factory=WarmStartSettings)
     post_peak: PostPeakSettings = field(default_factory=PostPeakSettings)
     displacement_control: DisplacementControlSettings = field(default_factory=DisplacementControlSettings)

@@ -127,6 +127,13 @@ class Elastic:
         values[self.order] = scaled * self.columns * self.unit
         return values
 
+    def forces_and_gaps(self, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Normal forces [N], (n_points,), shear forces [N], (n_points, d − 1), and gaps [m], (n_points,)."""
+        gaps = self.opened(state.displacements)
+        closed = state.normal > self.kn * (gaps + state.normal / self.kn)
+        gaps = np.where(closed, -state.normal / self.kn, np.maximum(gaps, 0.0)) * self.unit
+        return state.normal * self.weight, state.shear.reshape(-1, self.n_points).T * self.weight, gaps
+
     @property
     def n_points(self) -> int:
         """Number of contact points."""
@@ -157,13 +164,16 @@ class Elastic:
         """LU of the structure while nothing slips; share: of the stiffness of every point."""
         return self.factorised(share * self.kn, self.slips.elastic(share * self.ks))
 
-    def factorised(self, stiff_n: np.ndarray, tangential: list[np.ndarray]) -> FrontFactors:
+    def factorised(
+        self, stiff_n: np.ndarray, tangential: list[np.ndarray], viscosity: np.ndarray | None = None
+    ) -> FrontFactors:
         """LU of Bnᵀ kN Bn + Btᵀ kT Bt − Btᵀ c Bn; tangential: kT and −c (limit.slips: SlipStiffness.stiffness).
 
-        Factors of the call before are lost. Raises RuntimeError where it is singular.
+        viscosity: of the free degrees of freedom, on the diagonal. Factors of the call before are lost. Raises
+        RuntimeError where it is singular.
         """
         self.factorisations += 1
-        return self.matrix.factorised([stiff_n, *tangential])
+        return self.matrix.factorised([stiff_n, *tangential], viscosity)
 
     def imbalance(self, normal: np.ndarray, shear: np.ndarray, load: float) -> np.ndarray:
         """Unbalanced forces, (n_free,)."""

@@ -63,13 +63,21 @@ class Course:
 class Increment:
     """One increment from a state to a displacement of the live load, or to a load.
 
-    end: mean product at which it ends, over the square of the lightest block (None: as set).
+    end        mean product at which it ends, over the square of the lightest block (None: as set)
+    viscosity  force of the free degrees of freedom per displacement of this increment, against it, (n_free,)
     """
 
     def __init__(
-        self, problem: Elastic, before: State, displacement: float | None, load: float = 0.0, end: float | None = None
+        self,
+        problem: Elastic,
+        before: State,
+        displacement: float | None,
+        load: float = 0.0,
+        end: float | None = None,
+        viscosity: np.ndarray | None = None,
     ):
         self.problem, self.before, self.displacement, self.target = problem, before, displacement, load
+        self.viscosity = viscosity
         self.settings = problem.settings.of_increment(problem.dimension)
         self.end = (self.settings.end if end is None else end) * problem.lightest
         problem.draw_in(before.normal)
@@ -232,6 +240,8 @@ class Increment:
         problem, before, slips = self.problem, self.before, self.problem.slips
         normal, opening = slips.normals(at.x)
         self.unbalanced = problem.imbalance(normal, at.shear, at.load)
+        if self.viscosity is not None:
+            self.unbalanced -= self.viscosity * (at.u - before.displacements)
         moved = problem.motion @ (at.u - before.displacements)
         self.off_gap = self.gaps + moved[: problem.n_points] + normal / problem.kn - opening
         self.off_slide = slips.slides(at.x) - (at.shear - before.shear) / problem.ks_t - moved[problem.n_points :]
@@ -255,7 +265,7 @@ class Increment:
         self.stiff_n = self.normal / self.soft_n
         self.joints = problem.slips.linear(at.x, problem.friction, problem.ks, self.stiff_n)
         try:
-            self.lu = problem.factorised(self.stiff_n, self.joints.stiffness)
+            self.lu = problem.factorised(self.stiff_n, self.joints.stiffness, self.viscosity)
         except RuntimeError:
             return False
         self.by_live = self.lu.solve(problem.live)

@@ -63,16 +63,20 @@ class NewtonMatrix:
             self.rows, self.pushed = (room.reshape(*room.shape[:-2], 2 * n_dof) for room in (self.rows, self.pushed))
             self.part = np.empty((2 * n_dof, 2 * n_dof))
 
-    def factorised(self, factors: list[np.ndarray]) -> FrontFactors:
+    def factorised(self, factors: list[np.ndarray], more: np.ndarray | None = None) -> FrontFactors:
         """LU factors of the matrix whose products have these factors; those of the last call are lost.
 
-        Raises RuntimeError where it is singular.
+        more: what comes to its diagonal, (n_columns,); None: as little as makes it regular. Raises RuntimeError where
+        it is singular.
         """
         from dem_cli.limit.front_factors import add_to_diagonal, factorise
 
         fronts, values = self.fronts, self.values
         self._assemble(np.stack([factors[k] for k in self.of_pair]))
-        add_to_diagonal(values, self.diagonal, self.settings.singular)
+        if more is None:
+            add_to_diagonal(values, self.diagonal, self.settings.singular)
+        else:
+            values[self.diagonal] += more
         if not factorise(values, fronts, self.room):
             raise RuntimeError("a pivot is nothing: the matrix is singular")
         return FrontFactors(self)

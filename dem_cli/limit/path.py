@@ -125,15 +125,15 @@ def trace(
     def spent() -> bool:
         return problem.factorisations * problem.n_points > most
 
-    at_rest = _at_rest(problem)
+    rest = at_rest(problem)
     for easier, folds in settings.path.easier:
-        standing = _advance(problem, at_rest, None, spent, folds, easier)
+        standing = _advance(problem, rest, None, spent, folds, easier)
         if standing is not None:
             break
     path.factorisations = problem.factorisations
     if standing is None:
         return path
-    _keep(path, structure, problem, standing, at_rest, 0.0)
+    _keep(path, structure, problem, standing, rest, 0.0)
     path.status = UNFINISHED
     _follow(path, structure, problem, standing, growth_of_plateau, spent, progress)
     path.factorisations = problem.factorisations
@@ -157,7 +157,7 @@ class Walk:
     def __init__(self, problem: Elastic, standing: State, stop: Callable[[], bool]) -> None:
         self.problem, self.settings, self.stop = problem, problem.settings.path, stop
         self.state = standing
-        self.origin, self.elastic = float(product(problem.live, standing.displacements)), _compliance(problem, standing)
+        self.origin, self.elastic = float(product(problem.live, standing.displacements)), compliance(problem, standing)
         self.reached = 0.0
         self.share = 1.0  # of the longest increment, that the next one is tried with
         self.last: Stride | None = None
@@ -187,7 +187,7 @@ class Walk:
         end = settings.smoothing * largest / problem.lightest if settings.smoothing else settings.end
         increment = Increment(problem, state, target, end=end)
         rough = settings.rough * largest
-        tau = easier * _first_products(problem, state, target)
+        tau = easier * first_products(problem, state, target)
         found = increment.solve(tau, ahead, folds, self.stop, rough)
         if found is None:
             return None
@@ -286,7 +286,8 @@ def is_plateau(settings: PathSettings, reached: float, since: float, slope: floa
     return since >= settings.early and (slope < settings.calm or reached > settings.growth**1.5 * since)
 
 
-def _at_rest(problem: Elastic) -> State:
+def at_rest(problem: Elastic) -> State:
+    """Blocks where they are drawn, all joints pressed by half a weight: from there dead loads come at once."""
     n, shear = problem.n_points, np.zeros(len(problem.ks_t))
     return State(np.zeros(len(problem.columns)), 0.0, np.full(n, 0.5), shear, np.zeros(n + len(shear)))
 
@@ -300,17 +301,17 @@ def _advance(
     easier: float = 1.0,
 ) -> State | None:
     """The state at a displacement of the live load; without one, under dead loads alone."""
-    tau = easier * _first_products(problem, state, target)
+    tau = easier * first_products(problem, state, target)
     return Increment(problem, state, target).solve(tau, 0.0, folds, stop)
 
 
-def _first_products(problem: Elastic, state: State, target: float | None) -> float:
+def first_products(problem: Elastic, state: State, target: float | None) -> float:
     """Products N p and c ∘ a to begin an increment with."""
     largest = float(state.normal.max(initial=1.0)) if target is not None else float(np.abs(problem.dead).max())
     return problem.settings.path.tau * max(largest, 1.0) ** 2
 
 
-def _compliance(problem: Elastic, state: State) -> float:
+def compliance(problem: Elastic, state: State) -> float:
     """Displacement of the live load per unit of multiplier while all loaded joints are closed."""
     path = problem.settings.path
     closed = state.normal > path.loaded * state.normal.max(initial=1.0)
@@ -355,11 +356,7 @@ def _keep(
         return False  # softer than before: the structure fails where the load was highest
     path.load, path.highest = load, len(path.loads) - 1
     path.residual = problem.residual(state, before)
-    path.normal = state.normal * problem.weight
-    path.shear = state.shear.reshape(-1, problem.n_points).T * problem.weight
-    gaps = problem.opened(state.displacements)
-    closed = state.normal > problem.kn * (gaps + state.normal / problem.kn)
-    path.gaps = np.where(closed, -state.normal / problem.kn, np.maximum(gaps, 0.0)) * problem.unit
+    path.normal, path.shear, path.gaps = problem.forces_and_gaps(state)
     path.displacements = structure.on_blocks(moved)
     motion = moved - problem.displacements((since or before).displacements)
     power = float(product(structure.live, motion))

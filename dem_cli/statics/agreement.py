@@ -11,10 +11,11 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from dem_cli.statics.failure_bracket import FailureLoad
-from dem_cli.statics.warm_start import CURVE
+from dem_cli.statics.warm_start import CURVE, IMPLICIT
 from dem_cli.statics.warm_start import PATH as AT_PATH
 
 RAISED, IN_LARGE_STEPS, PATH, CREEP = "raised from gravity", "in larger steps", "zero-dilation path", "creep"
+IN_IMPLICIT_STEPS = "implicit steps under load"
 FROM_CURVE, PATH_OF_START = "displacement control", "zero-dilation path of the start"
 HOLDS = 2e-4  # of the bound, that it may lie outside a bracket that holds it: failure is shown a little above
 LIMIT = "limit analysis"  # where nothing slides in its mechanism: then rigid blocks carry its load on any history
@@ -51,7 +52,7 @@ def unique(search: FailureLoad) -> bool:
 
 def histories(search: FailureLoad) -> list[History]:
     """All ways to failure that were tried, that of the answer first."""
-    way = {CURVE: FROM_CURVE, AT_PATH: PATH}.get(str(search.start.get("kind")), RAISED)
+    way = {CURVE: FROM_CURVE, AT_PATH: PATH, IMPLICIT: IN_IMPLICIT_STEPS}.get(str(search.start.get("kind")), RAISED)
     found = [] if search.low is None else [History(way, search.low, search.found and not search.wide)]
     if search.earlier is not None:
         found.append(History(IN_LARGE_STEPS, search.earlier[0], True))
@@ -83,9 +84,12 @@ def load_range(search: FailureLoad, resolution: float) -> dict[str, Any] | None:
         return None
     loads = [low, *(other.load for other in apart)]
     named = ", ".join(f"{_at_least(other)}{other.load:.5g} by {_BY[other.method]}" for other in apart)
-    way = "from the end of the zero-dilation path" if first.method == PATH else "raised from gravity in steps"
+    way = _WAYS.get(first.method, "raised from gravity in steps")
     why = f"{low:.5g} {way}, {named}"
     return {"lowest": float(min(loads)), "highest": float(max(loads)), "why": why}
+
+
+_WAYS = {PATH: "from the end of the zero-dilation path", IN_IMPLICIT_STEPS: "in implicit steps from gravity"}
 
 
 def _at_least(history: History) -> str:

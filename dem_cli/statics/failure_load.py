@@ -32,7 +32,7 @@ from dem_cli.statics.equilibrium import Ahead, Verdict, check_finite, relax, set
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, LoadPass, SearchRange
 from dem_cli.statics.mechanism import follows
 from dem_cli.statics.trial_loads import TrialLoads
-from dem_cli.statics.warm_start import CURVE, GRAVITY, LIMIT, PATH, start_by_path
+from dem_cli.statics.warm_start import CURVE, GRAVITY, LIMIT, PATH, start_by_history, start_by_path
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -103,7 +103,7 @@ class LoadSearch:
         elif self.longest is not None or sim.play.moved.any():  # a creep would stop at the first microrotation
             first = settings.first_in_play if self.longest is None else self.longest
             self._raise_load(self._trials([], first, np.inf if self.longest is None else self.longest))
-        elif not self._ends_where_the_path_does():
+        elif not (self._ends_where_the_history_does() or self._ends_where_the_path_does()):
             self._raise_to_estimate()
 
     def run_again_in_small_steps(self, most: float) -> None:
@@ -175,6 +175,21 @@ class LoadSearch:
             return max(load, estimate), False
         self.plateau = load
         return load, True
+
+    def _ends_where_the_history_does(self) -> bool:
+        """Whether an implicit history leads to a load that the explicit solver holds; it shows the failure above it."""
+        answer, limits, settings, scale = self.answer, self.answer.limits, self.settings, self.sim.live_scale
+        if limits is None or answer.bound is None or not limits.slides:
+            return False
+        if limits.largest < self.sim.settings.implicit_history.blocks or limits.too_large:
+            return False
+        report = dict(answer.start)
+        start = start_by_history(limits, report)
+        if start is None or not self._holds(start, settings.below * self.resolution):
+            return False
+        answer.start, self.plateau = report, start.load / scale
+        self._raise_load(self._trials([], settings.one_step * self.resolution * answer.carried / scale))
+        return True
 
     def _ends_where_the_path_does(self) -> bool:
         """Whether the path of a large structure leads to a load that the explicit solver holds.

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from dem_cli.limit.associated import LimitLoad
     from dem_cli.limit.matrices import Structure
     from dem_cli.limit.path import Path
+    from dem_cli.statics.implicit_history import HeldState
 
 
 class RigidLimits:
@@ -141,6 +142,31 @@ class RigidLimits:
         )  # fmt: skip
 
     @cached_property
+    def history(self) -> HeldState | None:
+        """The implicit history under load from gravity to failure; None where it does not apply, or was not found."""
+        if self._matrices is None or self.sim.links or self.bound is None:
+            return None
+        begun = time.perf_counter()
+        found = self._followed(*self._matrices)
+        self.seconds["history"] = time.perf_counter() - begun
+        return found
+
+    @stage
+    def _followed(self, structure: Structure, friction: np.ndarray) -> HeldState | None:
+        from dem_cli.limit.elastic import Elastic
+        from dem_cli.statics.implicit_history import ImplicitHistory
+
+        settings, clock, bound = self.job.settings, self.job.clock, self.bound
+        assert bound is not None
+        problem, of = Elastic(structure, friction, settings.limit), settings.implicit_history
+        most = of.effort / max(problem.n_points, 1)
+        history = ImplicitHistory(
+            problem, of, lambda: problem.factorisations > most,
+            lambda load, _: clock.progress("holding loads in implicit steps", load, 0.0, None),
+        )  # fmt: skip
+        return history.search(bound, of.narrow * self.job.case.analysis.resolution)
+
+    @cached_property
     def largest(self) -> int:
         """Blocks of the largest structure."""
         return largest_structure(self.sim.joints.blocks, self.sim.model.fixed)
@@ -156,6 +182,11 @@ class RigidLimits:
         whole = np.broadcast_to(otherwise, shape).copy()
         whole[self.touching] = values
         return whole
+
+    def on_blocks(self, moved: np.ndarray) -> np.ndarray:
+        """Displacements of all blocks, (n_blocks, n_dof), by those of the free degrees of freedom, (n_free,)."""
+        assert self._matrices is not None
+        return self._matrices[0].on_blocks(moved)
 
     @property
     def followed(self) -> bool:

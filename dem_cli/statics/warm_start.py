@@ -20,13 +20,14 @@ if TYPE_CHECKING:
     from dem_cli.engine.state import SavedState
 
 GRAVITY, PATH, LIMIT = "gravity", "path", "limit"  # analysis.start
+IMPLICIT = "implicit history"  # under load, from gravity
 CURVE = "curve"  # of displacement control
 
 
 class WarmStart(NamedTuple):
     """A state in equilibrium."""
 
-    kind: str  # PATH or LIMIT
+    kind: str  # PATH, LIMIT or IMPLICIT
     load: float  # its multiplier, as users know it
     normal: np.ndarray  # [N], (n_points,)
     shear: np.ndarray  # [N], (n_points, d − 1)
@@ -104,6 +105,18 @@ def start_by_path(limits: RigidLimits, report: dict[str, Any]) -> WarmStart | No
     normal, shear, gaps, displacements = path.state
     normal, shear, gaps = limits.on_points(normal), limits.on_points(shear), limits.on_points(gaps, limits.gaps)
     return WarmStart(PATH, path.load, normal, shear, gaps, displacements, work, path.flat(warm_start.at_the_end))
+
+
+def start_by_history(limits: RigidLimits, report: dict[str, Any]) -> WarmStart | None:
+    """The state at the highest load that an implicit history from gravity held; None where there is none."""
+    held = limits.history
+    if held is None or held.low <= 0.0:
+        return None
+    report |= {"kind": IMPLICIT, **held.summary(), "seconds": limits.seconds["history"]}
+    normal, shear = limits.on_points(held.normal), limits.on_points(held.shear)
+    displacements = limits.on_blocks(held.displacements)
+    gaps = limits.on_points(held.gaps, limits.gaps)
+    return WarmStart(IMPLICIT, held.low, normal, shear, gaps, displacements, held.work, plateau=True)
 
 
 def _by_limit_analysis(job: Job, limits: RigidLimits, report: dict[str, Any]) -> WarmStart | None:

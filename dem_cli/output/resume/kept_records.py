@@ -49,6 +49,7 @@ _PLACES = {
     "statics.equilibrium": ("Verdict",),
     "statics.failure_test": ("FailureTest",),
     "statics.hysteresis": ("PathState",),
+    "statics.implicit_history": ("HeldState", "Level", "Resisted"),
     "statics.post_peak": ("CurvePeak",),
 }  # fmt: skip
 RECORDS: Registered[type] = Registered(

@@ -16,7 +16,7 @@ from dem_cli.limit.analysis import limit_loads, start_structure
 from dem_cli.limit.cone import friction_of
 from dem_cli.limit.elastic import Elastic
 from dem_cli.limit.interior import Increment
-from dem_cli.limit.path import FALLS, OK, UNFINISHED, _at_rest, trace
+from dem_cli.limit.path import FALLS, OK, UNFINISHED, at_rest, trace
 from dem_cli.limit.path import Path as LoadPath
 from dem_cli.limit.settings import DEFAULT_LIMIT
 from dem_cli.limit.slips import apart
@@ -135,7 +135,7 @@ def test_folds_of_the_central_path_are_gone_round():
     """An increment of this wall stops at a fold; by arc length it arrives, at an equilibrium under the law."""
     structure, friction = ingredients(CASES.parent / "gallery" / "gatehouse.toml", "analysis.follow=0.0")
     problem = Elastic(structure, friction)
-    rest = _at_rest(problem)
+    rest = at_rest(problem)
     standing = Increment(problem, rest, None).solve(1.0, folds=6)
     elastic = float(problem.live @ problem.elastic().solve(problem.live))
     target = float(problem.live @ standing.displacements) + 0.25 * elastic
@@ -154,7 +154,7 @@ def test_rough_states_are_in_equilibrium_and_lead_on():
     patient = DEFAULT_LIMIT.interior_point
     hasty = replace(DEFAULT_LIMIT, interior_point=replace(patient, slow=5))
     problem, stopped = Elastic(structure, friction), Elastic(structure, friction, hasty)
-    standing = Increment(problem, _at_rest(problem), None).solve(1.0)
+    standing = Increment(problem, at_rest(problem), None).solve(1.0)
     elastic = float(problem.live @ problem.elastic().solve(problem.live))
     origin, tau = float(problem.live @ standing.displacements), 0.01 * float(standing.normal.max()) ** 2
     assert Increment(stopped, standing, origin + 0.3 * elastic).solve(tau) is None

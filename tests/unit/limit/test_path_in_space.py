@@ -16,7 +16,7 @@ from dem_cli.limit.analysis import limit_loads, start_structure
 from dem_cli.limit.cone import friction_of
 from dem_cli.limit.elastic import Elastic, cones_of
 from dem_cli.limit.matrices import Structure, structure_of
-from dem_cli.limit.path import OK, Path, _advance, _at_rest, _compliance, trace
+from dem_cli.limit.path import OK, Path, _advance, at_rest, compliance, trace
 from dem_cli.limit.settings import PathSettings
 from dem_cli.limit.slip_cones import SlipCones
 
@@ -136,8 +136,8 @@ def test_a_fold_of_the_central_path_is_gone_round():
     solids, faces = panel(10, 10, (2.0, 0.8, 1.0), 0.0, held=0.8)
     made = structure(solids, faces, horizontal(90.0))
     problem = Elastic(made, np.full(len(made.joints.kn), 0.7))
-    standing = _advance(problem, _at_rest(problem), None, lambda: False)
-    origin, elastic = float(problem.live @ standing.displacements), _compliance(problem, standing)
+    standing = _advance(problem, at_rest(problem), None, lambda: False)
+    origin, elastic = float(problem.live @ standing.displacements), compliance(problem, standing)
     held = _advance(problem, standing, origin + 0.25 * elastic, lambda: False)
     assert held.load * problem.live_scale == pytest.approx(0.106, rel=0.01)
     direct, around = (_advance(problem, held, origin + 0.275 * elastic, lambda: False, folds=folds) for folds in (0, 4))

@@ -1,0 +1,218 @@
+"""Implicit history under load: from gravity to failure by overdamped steps at constant loads, every one committed.
+
+A step is the contact problem of limit/interior.py with a viscosity C / Δt on its diagonal (backward Euler; C: the own
+weight of a block per elastic displacement). Δt grows as long as blocks hardly move, so that a load that is carried
+comes to rest in a few steps. At a load that fails blocks move on for ever, and the power of the viscosity says how much
+less the structure resists with: λs = λ − Σ C v² / (q · v). Where λs grows no more while the displacement doubles, the
+load fails. λs over the displacement is the capacity curve of this history.
+
+It is a history under load: it steps over no plateau. Joints remember their slip from step to step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from dem_cli.arithmetic.products import product
+from dem_cli.engine.static_settings import ImplicitHistorySettings
+from dem_cli.limit.elastic import Elastic, State
+from dem_cli.limit.interior import Increment
+from dem_cli.limit.path import at_rest, compliance, first_products
+
+HOLDS, FAILS, UNDECIDED = "holds", "fails", "undecided"  # verdicts
+
+
+class Resisted(NamedTuple):
+    """What a structure resists with after a step: a point of the capacity curve."""
+
+    displacement: float  # of the live load since gravity, over its elastic one at the multiplier 1
+    load: float  # multiplier λs, as users know it
+
+
+class Level(NamedTuple):
+    """A load that was kept constant."""
+
+    load: float  # multiplier, as users know it
+    verdict: str  # HOLDS, FAILS or UNDECIDED
+    steps: int
+    resisted: float  # highest λs at it, as users know it
+
+
+class HeldState(NamedTuple):
+    """The highest load that an implicit history held, and the lowest that failed, with the state at the first."""
+
+    low: float  # multipliers, as users know them
+    high: float
+    normal: np.ndarray  # [N], (n_points,)
+    shear: np.ndarray  # [N], (n_points, d − 1)
+    gaps: np.ndarray  # [m], (n_points,)
+    displacements: np.ndarray  # of the free degrees of freedom since before gravity [m, rad], (n_free,)
+    work: float  # of the live loads on the way [J]
+    levels: list[Level]
+    curve: list[Resisted]
+
+    def summary(self) -> dict[str, Any]:
+        """What summary.json says of it."""
+        return {
+            "load": self.low,
+            "fails": self.high,
+            "loads": len(self.levels),
+            "steps": sum(level.steps for level in self.levels),
+        }
+
+
+@dataclass
+class ImplicitHistory:
+    """Loads that hold and fail, in steps from gravity; loads are multipliers as users know them.
+
+    stop: whether to give up, asked before each step. The highest load that held is `low` with its `state`, the lowest
+    that failed `high`; the `curve` is what the structure resisted with on the way.
+    """
+
+    problem: Elastic
+    settings: ImplicitHistorySettings
+    stop: Callable[[], bool] = lambda: False
+    progress: Callable[[float, float], None] = lambda load, reached: None
+    low: float = 0.0
+    high: float | None = None
+    state: State | None = None  # None: no equilibrium under dead loads was found
+    work: float = 0.0  # of the live loads until then [J]
+    levels: list[Level] = field(default_factory=list)
+    curve: list[Resisted] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self._reached = 0.0  # displacement at `low`
+        self._origin = self._elastic = self._first_step = 0.0
+
+    def search(self, bound: float, resolution: float) -> HeldState | None:
+        """The load that fails, below a bound, to a relative width; None where it was not found."""
+        if not (self._stand() and self._close_in(bound, resolution)):
+            return None
+        problem, state = self.problem, self.state
+        assert state is not None
+        assert self.high is not None
+        moved = problem.displacements(state.displacements)
+        return HeldState(
+            self.low, self.high, *problem.forces_and_gaps(state), moved, self.work, self.levels, self.curve
+        )
+
+    def _close_in(self, bound: float, resolution: float) -> bool:
+        """Load after load, until the bracket is as narrow; False where one of them stays undecided."""
+        settings, plateau, tries = self.settings, None, 0
+        shares = list(settings.shares)
+        while not self.stop():
+            low, high = self.low, self.high
+            if high is None and low >= (1.0 - resolution) * bound:
+                self.high = high = bound
+            if high is not None and high - low <= resolution * low:
+                return True
+            below, above = ((1.0 + side * settings.beside * resolution) * (plateau or 0.0) for side in (-1.0, 1.0))
+            if high is None and shares:
+                load = shares.pop(0) * bound
+            elif high is None:
+                load = min(settings.growth * low, 0.5 * (low + (1.0 + settings.beyond) * bound))
+            elif low < below < high:
+                load = below
+            elif low < above < high and tries < 2:
+                load, tries = above, tries + 1
+            else:
+                load = 0.5 * (low + high)
+            level = self._hold(load)
+            self.levels.append(level)
+            if level.verdict == UNDECIDED:
+                return False
+            if level.verdict == FAILS:
+                plateau, tries = level.resisted, 0
+        return False
+
+    def _stand(self) -> bool:
+        """Equilibrium under dead loads; False: not found."""
+        problem, rest = self.problem, at_rest(self.problem)
+        for easier, folds in problem.settings.path.easier[: self.settings.under_dead_loads]:
+            tau = easier * first_products(problem, rest, None)
+            self.state = Increment(problem, rest, None).solve(tau, 0.0, folds, self.stop)
+            if self.state is not None:
+                break
+        else:
+            self.state = self._settled(rest)
+        if self.state is None:
+            return False
+        self._origin = float(product(problem.live, self.state.displacements))
+        self._elastic = compliance(problem, self.state)
+        unit = float(np.abs(problem.elastic().solve(problem.live)).max())
+        self._first_step = self.settings.first_step * unit
+        return self._elastic > 0.0
+
+    def _settled(self, state: State) -> State | None:
+        """Equilibrium under dead loads, which come at once, by overdamped steps; None: they do not come to rest."""
+        settings, step, tau = self.settings, self.settings.first_under_dead_loads, self.settings.tau
+        for _ in range(self.settings.most_under_dead_loads):
+            if self.stop():
+                return None
+            new = self._step(state, 0.0, step, tau, 0.0)
+            if new is None:
+                step, tau = step / settings.cut, max(tau / settings.cut_products, settings.least_tau)
+                continue
+            speed = float(np.abs(new.displacements - state.displacements).max()) / step
+            state, tau = new, min(settings.regrowth * tau, settings.tau)
+            if speed < settings.at_rest:
+                return state
+            step *= settings.growth_of_step
+        return None
+
+    def _displacement(self, state: State) -> float:
+        return (float(product(self.problem.live, state.displacements)) - self._origin) / self._elastic
+
+    def _hold(self, load: float) -> Level:
+        """A constant load from the highest that held so far; where it holds it is that."""
+        problem, settings, state = self.problem, self.settings, self.state
+        assert state is not None
+        step, tau, last, steps = self._first_step, settings.tau, None, 0
+        begun, far = self._reached, max(settings.far * self._reached, settings.far_per_load * load)
+        reached, failed, past = begun, 0, list[Resisted]()
+        while steps < settings.most_steps and not self.stop():
+            steps += 1
+            new = self._step(state, load / problem.live_scale, step, tau, 0.0 if last is None else step / last)
+            if new is None:
+                failed += 1
+                if failed > settings.most_failed:
+                    break
+                step, tau = step / settings.cut, max(tau / settings.cut_products, settings.least_tau)
+                continue
+            moved = new.displacements - state.displacements
+            speed = float(np.abs(moved).max()) / step
+            work, lost = float(product(problem.live, moved)), float(product(problem.own * moved, moved)) / step
+            lacking = lost / work * problem.live_scale if work > 0.0 else 0.0
+            tau, last, state = min(settings.regrowth * tau, settings.tau), step, new
+            before, reached = reached, self._displacement(new)
+            past.append(Resisted(reached, load - lacking))
+            self.progress(load, reached)
+            if speed < settings.at_rest:
+                self._keep(load, state, reached, past)
+                return Level(load, HOLDS, steps, load)
+            if reached > far and (half := [one.load for one in past if one.displacement <= 0.5 * reached]):
+                lacked = load - half[-1]
+                if lacking > settings.flat * lacked:
+                    self.high = load
+                    self.curve += past
+                    return Level(load, FAILS, steps, max(one.load for one in past))
+            grown = reached - before
+            share = settings.share * max(reached, 0.5) / grown if grown > 0.0 else np.inf
+            step *= min(settings.growth_of_step, share)
+        return Level(load, UNDECIDED, steps, max((one.load for one in past), default=0.0))
+
+    def _step(self, state: State, load: float, step: float, tau: float, longer: float) -> State | None:
+        problem, settings = self.problem, self.settings
+        largest = max(float(state.normal.max(initial=1.0)), 1.0) ** 2
+        increment = Increment(problem, state, None, load, settings.end, problem.own / step)
+        return increment.solve(tau * largest, min(longer, settings.ahead), 0, self.stop)
+
+    def _keep(self, load: float, state: State, reached: float, past: list[Resisted]) -> None:
+        weight = self.problem.weight * self.problem.unit
+        self.work += load / self.problem.live_scale * (reached - self._reached) * self._elastic * weight
+        self.low, self.state, self._reached = load, state, reached
+        self.curve += past
