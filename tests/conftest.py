@@ -6,6 +6,7 @@ import gc
 import os
 import signal
 import sys
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -41,8 +42,10 @@ def pytest_collection() -> Iterator[None]:
 
 @pytest.hookimpl(tryfirst=True)  # before -m chooses
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Marks as slow what tests/slow_tests.txt names."""
+    """Marks as slow what tests/slow_tests.txt names, and as one third of it, by its name."""
     named = set(Path(__file__).with_name("slow_tests.txt").read_text(encoding="utf-8").splitlines())
     for item in items:
-        if named & {item.nodeid, item.nodeid.split("[")[0]}:
+        name = item.nodeid.split("[")[0]
+        if named & {item.nodeid, name}:
             item.add_marker(pytest.mark.slow)
+            item.add_marker(f"third_{zlib.crc32(name.encode()) % 3}")

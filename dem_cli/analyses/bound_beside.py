@@ -10,8 +10,8 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from dem_cli.contact.gaps import gaps_of_start
 from dem_cli.engine import measures
+from dem_cli.engine.kinematics import gaps_may_close
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.errors import UsageError
 from dem_cli.output.record import ABOVE
@@ -101,7 +101,7 @@ def _differs_by_its_history(job: Job, sim: Simulation) -> bool:
     """Whether a failure load in geometry that moves is that of stiff joints with friction alone and without gaps."""
     if sim.kinematics == "fixed" or sim.properties.given or sim.properties.rough or sim.law.bonded:
         return False
-    return not (job.case.imperfection or gaps_of_start(job.model).close.any())
+    return not gaps_may_close(job.case, job.model)
 
 
 def beside(job: Job, search: FailureLoad, sim: Simulation, start: StartBound) -> dict[str, Any]:

@@ -41,6 +41,11 @@ def why_moving(case: Case, model: Model) -> str | None:
     return f"{gap_words(model, wedges)} may close at one end" if len(wedges.widths) else None
 
 
+def gaps_may_close(case: Case, model: Model) -> bool:
+    """Whether blocks start with gaps, drawn or of imperfections, that may close on the way to failure."""
+    return bool(case.imperfection) or bool(gaps_of_start(model).close.any())
+
+
 def fixed_beside(case: Case, model: Model) -> np.ndarray | None:
     """Free blocks of connected structures whose gaps may close, (n_blocks,) bool, where there are others beside them.
 

@@ -156,15 +156,15 @@ class RigidLimits:
         from dem_cli.limit.elastic import Elastic
         from dem_cli.statics.implicit_history import ImplicitHistory
 
-        settings, clock, bound = self.job.settings, self.job.clock, self.bound
+        settings, clock, bound = self.job.settings.implicit_history, self.job.clock, self.bound
         assert bound is not None
-        problem, of = Elastic(structure, friction, settings.limit), settings.implicit_history
-        most = of.effort / max(problem.n_points, 1)
+        problem = Elastic(structure, friction, self.job.settings.limit)
+        most = settings.effort / max(problem.n_points, 1)
         history = ImplicitHistory(
-            problem, of, lambda: problem.factorisations > most,
+            problem, settings, lambda: problem.factorisations > most,
             lambda load, _: clock.progress("holding loads in implicit steps", load, 0.0, None),
         )  # fmt: skip
-        return history.search(bound, of.narrow * self.job.case.analysis.resolution)
+        return history.search(bound, settings.narrow * self.job.case.analysis.resolution)
 
     @cached_property
     def largest(self) -> int:
