@@ -112,7 +112,7 @@ class WarmStartSettings:
 class ImplicitHistorySettings:
     """Overdamped implicit steps under constant loads (statics/implicit_history.py): loads, steps, and verdicts."""
 
-    blocks: int = 150  # of one structure, from which on it is quicker than the path and the loads after it
+    blocks: int = 60  # of one structure in the plane, from which on it is quicker than the path and loads after it
     effort: float = 2e7  # factorisations × points before giving up
     narrow: float = 0.5  # of the resolution: width of the bracket, so that a load beyond it fails soon
     shares: tuple[float, ...] = (0.5, 0.8, 0.9)  # of the bound: first loads
@@ -122,21 +122,19 @@ class ImplicitHistorySettings:
     under_dead_loads: int = 2  # of the attempts of the path to stand under dead loads
     first_under_dead_loads: float = 1e2  # first step of time where they come at once, in displacements of own weights
     most_under_dead_loads: int = 60  # of these steps
-    first_step: float = 20.0  # of time, in largest elastic displacements at the multiplier 1
+    first_step: float = 50.0  # of time, in largest elastic displacements at the multiplier 1
     growth_of_step: float = 8.0  # at most, and as long as
     share: float = 0.3  # of its displacement is what it grows by; at 0.6 loads come out 0.4 % too high
     at_rest: float = 1e-4  # force of the viscosity, in own weights, of an equilibrium
     far: float = 2.5  # displacements of the last equilibrium, beyond which a load may be seen to fail, and
     far_per_load: float = 5.0  # elastic ones
     flat: float = 0.7  # of what resistance lacked at half the displacement: so much still lacks where the load fails
-    tau: float = 1e-2  # of the first products of a step, over the square of the largest normal force
-    least_tau: float = 1e-7
+    tau: float = 3e-4  # of the first products of a step, over the square of the largest normal force
+    other_tau: tuple[float, ...] = (3e-6, 1e-2, 1e-7, 1.0)  # the same where steps fail, one after the other
     end: float = 1e-7  # of the last ones
     ahead: float = 1.5  # of the last slips, that the next step expects at most
-    cut: float = 4.0  # where a step fails: so much shorter, with products
-    cut_products: float = 100.0  # so much smaller, which then grow again
-    regrowth: float = 10.0  # so much from step to step
-    most_failed: int = 60
+    cut: float = 4.0  # where a step fails: so much shorter
+    most_failed: int = 40
     most_steps: int = 400
 
 

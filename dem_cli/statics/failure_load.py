@@ -181,7 +181,8 @@ class LoadSearch:
         answer, limits, settings, scale = self.answer, self.answer.limits, self.settings, self.sim.live_scale
         if limits is None or answer.bound is None or not limits.slides:
             return False
-        if limits.largest < self.sim.settings.implicit_history.blocks or limits.too_large:
+        plane = self.sim.model.dimension == 2  # in space it takes as long as the path, and fails more often
+        if not plane or limits.largest < self.sim.settings.implicit_history.blocks or limits.too_large:
             return False
         report = dict(answer.start)
         start = start_by_history(limits, report)

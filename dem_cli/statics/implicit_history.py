@@ -149,16 +149,17 @@ class ImplicitHistory:
 
     def _settled(self, state: State) -> State | None:
         """Equilibrium under dead loads, which come at once, by overdamped steps; None: they do not come to rest."""
-        settings, step, tau = self.settings, self.settings.first_under_dead_loads, self.settings.tau
+        settings, step, tau, in_turn = self.settings, self.settings.first_under_dead_loads, self.settings.tau, 0
         for _ in range(self.settings.most_under_dead_loads):
             if self.stop():
                 return None
             new = self._step(state, 0.0, step, tau, 0.0)
             if new is None:
-                step, tau = step / settings.cut, max(tau / settings.cut_products, settings.least_tau)
+                step, tau = step / settings.cut, settings.other_tau[in_turn % len(settings.other_tau)]
+                in_turn += 1
                 continue
             speed = float(np.abs(new.displacements - state.displacements).max()) / step
-            state, tau = new, min(settings.regrowth * tau, settings.tau)
+            state, tau, in_turn = new, settings.tau, 0
             if speed < settings.at_rest:
                 return state
             step *= settings.growth_of_step
@@ -173,21 +174,21 @@ class ImplicitHistory:
         assert state is not None
         step, tau, last, steps = self._first_step, settings.tau, None, 0
         begun, far = self._reached, max(settings.far * self._reached, settings.far_per_load * load)
-        reached, failed, past = begun, 0, list[Resisted]()
+        reached, failed, in_turn, past = begun, 0, 0, list[Resisted]()
         while steps < settings.most_steps and not self.stop():
             steps += 1
             new = self._step(state, load / problem.live_scale, step, tau, 0.0 if last is None else step / last)
             if new is None:
-                failed += 1
+                failed, tau = failed + 1, settings.other_tau[in_turn % len(settings.other_tau)]
+                step, in_turn = step / settings.cut, in_turn + 1
                 if failed > settings.most_failed:
                     break
-                step, tau = step / settings.cut, max(tau / settings.cut_products, settings.least_tau)
                 continue
             moved = new.displacements - state.displacements
             speed = float(np.abs(moved).max()) / step
             work, lost = float(product(problem.live, moved)), float(product(problem.own * moved, moved)) / step
             lacking = lost / work * problem.live_scale if work > 0.0 else 0.0
-            tau, last, state = min(settings.regrowth * tau, settings.tau), step, new
+            tau, last, state, in_turn = settings.tau, step, new, 0
             before, reached = reached, self._displacement(new)
             past.append(Resisted(reached, load - lacking))
             self.progress(load, reached)
