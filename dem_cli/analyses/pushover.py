@@ -206,7 +206,9 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
     search, resolution = load_search.answer, job.case.analysis.resolution
     if not search.found or search.limits is None or at_the_bound(search, resolution) or search.limits.too_large:
         return
-    if search.start["kind"] == IMPLICIT:  # steps under load: it is a history of small steps
+    if search.start["kind"] == IMPLICIT:  # a history of small steps under load itself
+        if search.limits.largest <= job.settings.warm_start.beside_implicit:
+            _ = search.limits.path
         return
     path = search.limits.path
     if path is None:

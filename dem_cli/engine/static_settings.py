@@ -103,6 +103,7 @@ class WarmStartSettings:
     """The path of a static solver, as a start or beside it: for which sizes, and when it has come to failure."""
 
     repeated: int = 1000  # blocks of one structure, beyond which no load is raised again in small steps
+    beside_implicit: int = 300  # blocks of one structure, up to which the path is followed beside an implicit history
     flat: float = 1.0  # resolutions: growth of the load along the path, over that of displacement, that counts as none
     drop: float = 0.98  # of the highest load: a path that ends below it does not say that the highest was a failure
     at_the_end: float = 0.4  # of the displacement of a path: beyond it the highest load is a plateau and not a peak

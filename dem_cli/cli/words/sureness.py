@@ -9,6 +9,7 @@ from dem_cli.cli.words.limit_loads import WEDGED, wedged
 from dem_cli.cli.words.numbers import load_text, seconds
 from dem_cli.cli.words.reference import reference_rows
 
+IMPLICIT = "implicit history"  # start of a search that was led from gravity in implicit steps
 STARTS = {"path": "the zero-dilation path", "limit": "the forces of limit analysis"}  # analysis.start
 
 
@@ -25,6 +26,9 @@ def sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(
             ("started from", f"{STARTS[start['kind']]} at {load_text(start['load'])}, {seconds(start['seconds'])}")
         )
+    if start.get("kind") == IMPLICIT:
+        loads = f"{start['loads']} loads in implicit steps, {seconds(start['seconds'])}"
+        rows.append(("from gravity", f"{loads}; motion step by step shows both ends"))
     limits = summary.get("limit_analysis") or {}
     known = [key for key in ("associated", "non_associated") if limits.get(key) is not None]
     if known:

@@ -1,0 +1,114 @@
+"""The implicit history under load: exact loads, and what it holds is in equilibrium; what it cannot find it leaves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from engine import block, rectangle, scene, solve, tables
+
+from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.engine.settings import DEFAULT
+from dem_cli.engine.static_settings import ImplicitHistorySettings
+from dem_cli.limit.analysis import start_structure
+from dem_cli.limit.cone import friction_of
+from dem_cli.limit.elastic import Elastic
+from dem_cli.statics.implicit_history import FAILS, HOLDS, ImplicitHistory
+from dem_cli.statics.warm_start import GRAVITY, IMPLICIT
+
+CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
+RESOLUTION = 0.002
+BASE = block("base", rectangle(-2, -1, 3, 0), fixed=True)
+
+
+def history_of(case, stop=lambda: False) -> ImplicitHistory:
+    made = scene(case)
+    structure = start_structure(made.model, joint_properties(made.case, made.model))
+    problem = Elastic(structure, friction_of(structure.joints, law_of(made.case)))
+    return ImplicitHistory(problem, ImplicitHistorySettings(), stop)
+
+
+@pytest.mark.parametrize(
+    ("name", "load", "bound"),
+    [
+        ("wall_21", 0.6, 0.6),  # slides at its bound
+        ("column_14", 8 / 49, 8 / 49),
+        ("arch_21", 0.1483, 0.1484),
+        ("arch_21_mu040", 0.0522, 0.06),  # the bound is not reached: joints do not dilate
+        ("portal", 0.3247, 0.33),
+    ],
+)
+def test_exact_loads(name, load, bound):
+    history = history_of(CASES / f"{name}.toml")
+    held = history.search(bound, RESOLUTION)
+    assert held is not None
+    assert held.low == pytest.approx(load, rel=RESOLUTION)
+    assert held.low < held.high <= (1.0 + RESOLUTION) * held.low
+    assert {level.verdict for level in held.levels} <= {HOLDS, FAILS}
+    assert max(level.load for level in held.levels if level.verdict == HOLDS) == held.low
+
+
+def test_what_is_held_is_in_equilibrium_under_the_law():
+    history = history_of(CASES / "arch_21_mu040.toml")
+    held = history.search(0.06, RESOLUTION)
+    problem, state = history.problem, history.state
+    normal, shear = state.normal, state.shear
+    unbalanced = problem.imbalance(normal, shear, held.low / problem.live_scale)
+    assert (np.abs(unbalanced) / problem.own).max() < 2e-4  # the force of the viscosity that is left
+    assert normal.min() >= 0.0
+    assert (np.abs(shear) - problem.friction * normal).max() < 1e-4
+    gaps = problem.opened(state.displacements)
+    assert np.abs(np.minimum(normal / problem.kn, gaps + normal / problem.kn)).max() < 1e-3 * normal.max()
+
+
+def test_resistance_grows_to_the_load_that_fails():
+    """A block of 0.2 × 1 m that rocks: what it resists with is below each load, and ends at 0.2."""
+    history = history_of(tables(BASE, block("b", rectangle(0, 0, 0.2, 1))))
+    held = history.search(0.25, RESOLUTION)
+    assert held.low == pytest.approx(0.2, rel=RESOLUTION)
+    assert held.curve[-1].displacement > 2.0 * max(one.displacement for one in held.curve[:-2] if one.load < 0.18)
+    assert held.curve[-1].load == pytest.approx(0.2, rel=1e-3)
+    assert max(one.load for one in held.curve) <= held.high
+
+
+def test_work_is_that_of_the_loads_on_the_way():
+    """A block at rest on friction: each load moves it by its elastic displacement alone, W = Σ λ Δq."""
+    history = history_of(tables(BASE, block("b", rectangle(0, 0, 1, 0.2)), friction=0.4))
+    held = history.search(0.5, RESOLUTION)
+    loads = [level.load for level in held.levels if level.verdict == HOLDS]
+    assert held.low == pytest.approx(0.4, rel=RESOLUTION)
+    compliance = held.work / sum(load * (load - before) for before, load in zip([0.0, *loads], loads))
+    displacement = np.abs(held.displacements[0])
+    weight = 2000.0 * 9.81 * 0.2
+    assert compliance == pytest.approx(weight * displacement / held.low, rel=0.05)
+
+
+def test_what_does_not_stand_has_no_history():
+    cantilever = block("b", rectangle(2.0, 0, 5.0, 0.2))  # its centroid is beyond the edge of the base
+    assert history_of(tables(BASE, cantilever)).search(0.5, RESOLUTION) is None
+
+
+def test_a_search_that_is_stopped_says_nothing():
+    assert history_of(CASES / "wall_21.toml", stop=lambda: True).search(0.6, RESOLUTION) is None
+
+
+def test_the_explicit_solver_shows_both_ends():
+    """A wall by the implicit history, and raised from gravity beside the path."""
+    found = {}
+    for blocks in (60, 10_000):
+        settings = replace(DEFAULT, implicit_history=replace(DEFAULT.implicit_history, blocks=blocks))
+        found[blocks] = summary = solve(CASES / "wall_2.toml", "analysis.follow=0", settings=settings)[0]
+        assert summary["status"] == "ok"
+    implicit, raised = found[60], found[10_000]
+    assert implicit["start"]["kind"] == IMPLICIT
+    assert raised["start"]["kind"] == GRAVITY
+    assert implicit["failure_load"] == pytest.approx(raised["failure_load"], rel=2.0 * RESOLUTION)
+    low, high = implicit["failure_load_bracket"]
+    assert low <= implicit["start"]["load"] * 1.0001
+    assert high <= low * (1.0 + 1.001 * RESOLUTION)
+    assert implicit["proof_of_failure"]["by"] == "motion"
+    assert [one["state"] for one in implicit["search"]] == ["equilibrium", "failure"]
+    assert implicit["histories"][0]["method"] == "implicit steps under load"
+    assert abs(implicit["energy_closure"]) < 1e-3
