@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.dynamics.bending_stiffness import bending_doubts
+from dem_cli.dynamics.braked_motion import braked_words
 from dem_cli.dynamics.coda import undecided
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import duration_of
@@ -185,6 +186,9 @@ class FragilityStudy:
                 "each run hangs on chance: rocking is ill-conditioned, and structures that differ by 0.1 % fall at "
                 "other intensities; repeats = 5 shows by how much"
             )
+        braked = max((run.braked for run in self.batcher.done.values()), default=0.0)
+        if braked > self.settings.doubts.governs:
+            self.warnings.append(braked_words(self.case, braked, " in one of the runs"))
         worst = _worst(run.closure for run in self.batcher.done.values() if run.collapsed is False)
         if worst is not None and abs(worst) > self.settings.doubts.closure:
             self.warnings.append(f"the energy of a run that stood does not close: {worst:.2%} is missing")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.dynamics.braked_motion import BrakedMotion, braked_words
 from dem_cli.dynamics.coda import Ending, ending
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen_blocks
 from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
@@ -67,6 +68,7 @@ class TimeHistory:
         self.overlap, self.peaks = 0.0, np.zeros(len(job.case.monitor))  # of all monitors, before a collapse is seen
         self.closed: float | None = None  # error of the energy book when a collapse was seen
         self.farthest = 0.0  # that a block went against the ground [m], look by look
+        self.braked = BrakedMotion(self.sim)
 
     def _simulation(self) -> tuple[DynamicSimulation, TimeStep]:
         """The simulation, with laws that know the time step."""
@@ -225,6 +227,7 @@ class TimeHistory:
         sim = self.sim
         row = self.track.write("shaking")
         self.overlap = max(self.overlap, row.overlap)
+        self.braked.look(sim)
         check_energy(sim, self.step, row.energy)
 
     def _outcome(self, found: dict[str, Any]) -> Outcome:
@@ -238,6 +241,10 @@ class TimeHistory:
                 "slows every motion; use it for nothing but a test"
             )
         self._doubt_what_follows()
+        braked = 0.0 if fell else self.braked.share(sim, measures.energy(sim))
+        if braked > self.job.settings.doubts.governs:
+            self.job.warnings.append(braked_words(self.case, braked))
+            found = found | {"contradictions": [f"mass damping took {100.0 * braked:.0f} % of the energy"]}
         return self.job.outcome([sim], found | {
             "time_step": self.step.step,
             "largest_time_step": self.step.limit,

@@ -11,7 +11,16 @@ _KNOWN = {STOOD: STOOD, ROCKS: f"stood, {ROCKS}", MOVES: "still moving at the en
 
 
 def ending_words(summary: Mapping[str, Any], digits: int = 4) -> str:
-    """How it ended and when; empty where a summary does not say. digits: of the time of a collapse."""
+    """How it ended and when, and what contradicts it; empty where a summary does not say.
+
+    digits: of the time of a collapse.
+    """
+    how = _how(summary, digits)
+    return "; ".join([how, *(summary.get("contradictions") or ())]) if how else ""
+
+
+def _how(summary: Mapping[str, Any], digits: int) -> str:
+    """How it ended, as the run itself says it."""
     fell = summary.get("collapsed")
     how = summary.get("ending") or (None if fell is None else COLLAPSED if fell else STOOD)
     if how != COLLAPSED:

@@ -366,6 +366,7 @@ class RunSummary(SummaryTable):
     above_the_bound: FoundAbove | None = None
     unbalanced_force: Maybe = None
     warnings: list[str] | None = None
+    contradictions: list[str] | None = None
     skipped: list[str] | None = None
 
 
