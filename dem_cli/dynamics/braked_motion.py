@@ -66,6 +66,6 @@ def braked_words(case: Case, share: float, runs: str = "") -> str:
     else:
         remedy = "rayleigh without its part of mass damps vibration alone"
     return (
-        f"mass-proportional damping took {100.0 * share:.0f} % of the energy of blocks that rock, slide or fall{runs}: they land "
-        f"late and move less far; {remedy}"
+        f"mass-proportional damping took {100.0 * share:.0f} % of the energy of blocks that rock, slide or fall{runs}: "
+        f"they land late and move less far; {remedy}"
     )

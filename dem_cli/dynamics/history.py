@@ -244,7 +244,7 @@ class TimeHistory:
         braked = 0.0 if fell else self.braked.share(sim, measures.energy(sim))
         if braked > self.job.settings.doubts.governs:
             self.job.warnings.append(braked_words(self.case, braked))
-            found = found | {"contradictions": [f"mass damping took {100.0 * braked:.0f} % of the energy"]}
+            self.job.contradictions.append(f"mass damping took {100.0 * braked:.0f} % of the energy")
         return self.job.outcome([sim], found | {
             "time_step": self.step.step,
             "largest_time_step": self.step.limit,
@@ -256,6 +256,7 @@ class TimeHistory:
             "largest_overlap": self.overlap,
             "unbalanced_force": None,
             "joint_state": joint_state(sim, END),
+            "contradictions": self.job.contradictions,
         })  # fmt: skip
 
     def _doubt_what_follows(self) -> None:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 class ShakenRunResult(NamedTuple):
     """Outcome of one structure under one ground motion."""
 
-    collapsed: bool | None  # before the time after the motion was over; None: it failed
+    collapsed: bool | None  # before the time after the motion was over; None: it failed, or still moved then
     time: float | None  # of the collapse [s]
     how: str  # the block that collapsed and how, that nobody knows whether one will, or why the run failed
     peaks: tuple[float, ...]  # largest absolute value of each monitor, up to the collapse
@@ -118,7 +118,7 @@ class RestedStructure:
         except SolverError as error:
             how = str(error)
         else:
-            collapsed, at, how, balance, word = end.how == COLLAPSED, end.time, end.why, closure(sim), end.how
+            collapsed, at, how, balance, word = end.collapsed, end.time, end.why, closure(sim), end.how
         steps, seconds = sim.steps - self.sim.steps, time.thread_time() - begun
         share = braked.share(sim, energy(sim)) if word else 0.0
         return ShakenRunResult(collapsed, at, how, tuple(peaks.values.tolist()), steps, balance, seconds, word, share)

@@ -36,6 +36,19 @@ def last_words(summary: Mapping[str, Any]) -> str:
     return "in the end" if summary.get("at_rest", True) else "at the end, still moving"
 
 
+def median_words(summary: Mapping[str, Any], digits: int = 4) -> str:
+    """Where half of the records collapse, as far as that is known; empty where it is not."""
+    if summary.get("median") is not None:
+        return f"{summary['median']:.{digits}g}"
+    between = summary.get("median_between")
+    if not between:
+        return ""
+    low, high = between
+    if high is None:
+        return f"above {low:.{digits}g}"
+    return f"between {low:.{digits}g} and {high:.{digits}g}" if low else f"below {high:.{digits}g}"
+
+
 def unfound_load(summary: Mapping[str, Any]) -> str:
     """What a search for the failure load that ended without one knows; empty where there is one, or no search."""
     bracket = summary.get("failure_load_bracket")

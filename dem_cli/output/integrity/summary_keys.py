@@ -332,6 +332,7 @@ class RunSummary(SummaryTable):
     energy_shares: dict[str, Number] | None = None
     peak_ground_acceleration: Maybe = None
     median: Maybe = None
+    median_between: Pair | None = None
     dispersion: Maybe = None
     confidence: FoundConfidence | None = None
     curve: FoundFragility | None = None
