@@ -137,6 +137,7 @@ def test_mass_damping_stops_a_flying_block():
         block("base", rectangle(-1, -1, 1, 0), fixed=True),
         block("b", rectangle(-0.5, 0.0, 0.5, 0.5)),
         gravity=0.0,
+        joints={"j": {"friction": 0.6, "kn": 1e9}},
         analysis={"kind": "time-history", "duration": 1.0, "settle": False},
         damping={"mass": 2.0},
         initial=[{"block": "b", "displacement": [0.0, 5.0], "velocity": [0.3, 1.0, 0.5]}],
