@@ -79,7 +79,8 @@ def groups_of(loaded: LoadedCase, compare: bool = True) -> list[RecordGroup]:
         raise CaseError(error.problems, loaded.render) from None
     groups = []
     for table, motions in zip(tables, suites):
-        target, compared, judged = None, None, ()
+        target = compared = None
+        judged: Sequence[Clause] = ()
         if table.kind == "artificial":
             target = target_of(table).scaled(abs(table.scale))
             compared = fit(motions, target, table.first_period) if compare else None

@@ -1,8 +1,8 @@
 """Suites of artificial accelerograms by Eurocode 8: every clause of EN 1998-1:2004, 3.2.3.1.2 that numbers decide.
 
 (3) the stationary part lasts 10 s at least, where no data of the site say otherwise; (4)a three accelerograms; (4)b the
-mean of their accelerations at period zero is not below ag S; (4)c between 0.2 T1 and 2 T1 no value of their mean spectrum
-for a damping of 5 % is below 90 % of the elastic spectrum for 5 %. Clause (2), agreement with magnitude and source, is
+mean of their accelerations at period zero is not below ag S; (4)c between 0.2 T1 and 2 T1 no value of their mean
+spectrum for a damping of 5 % is below 90 % of the elastic spectrum for 5 %. Clause (2), agreement with magnitude and source, is
 left to the user.
 """
 
