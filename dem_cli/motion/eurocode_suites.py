@@ -2,8 +2,8 @@
 
 (3) the stationary part lasts 10 s at least, where no data of the site say otherwise; (4)a three accelerograms; (4)b the
 mean of their accelerations at period zero is not below ag S; (4)c between 0.2 T1 and 2 T1 no value of their mean
-spectrum for a damping of 5 % is below 90 % of the elastic spectrum for 5 %. Clause (2), agreement with magnitude and source, is
-left to the user.
+spectrum for a damping of 5 % is below 90 % of the elastic spectrum for 5 %. Clause (2), agreement with magnitude and
+source, is left to the user.
 """
 
 from __future__ import annotations
