@@ -19,6 +19,7 @@ from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.initial_state import set_initial
 from dem_cli.dynamics.snapshots import Snapshots
 from dem_cli.dynamics.time_step import TimeStep, time_step
+from dem_cli.dynamics.vibration_error import refined
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.dynamic import DynamicSimulation, no_watch
@@ -82,6 +83,8 @@ class TimeHistory:
         if not found.held and analysis.time_step is None:
             history = self.job.settings.history
             found = found._replace(step=min(found.step, history.loose_step, history.loose_share * self.duration))
+        found, drifts = refined(found, sim, self.ground.motions, self.duration, analysis)
+        self.job.warnings += [drifts] if drifts else []
         if any(law.rates for law in laws_of(self.case)):
             sim = self.job.clock.compiled(lambda: make(found.step))
         return sim, found
