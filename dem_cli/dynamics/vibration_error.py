@@ -67,7 +67,7 @@ def refined(
     error = vibration_error(sim, motions, found.step, duration)
     if error.share <= settings.drift:
         return found, ""
-    wanted = math.sqrt(AIM * settings.drift / error.share)
+    wanted = functions.agreed(math.sqrt(AIM * settings.drift / error.share))
     chosen = analysis.time_step is None and analysis.margin == type(analysis).model_fields["margin"].default
     if chosen:
         found = found._replace(step=max(wanted, settings.shortest) * found.step)
@@ -136,7 +136,8 @@ def rates_of(omegas: np.ndarray, ratios: np.ndarray) -> np.ndarray:
 def rates_at(step: float, omegas: np.ndarray, ratios: np.ndarray) -> np.ndarray:
     """The same as a stable time step has them."""
     middle, lost = 1.0 - 0.5 * (step * omegas) ** 2, ratios * omegas * step
-    return np.log((middle + 1j * np.sqrt(np.maximum(1.0 - lost**2 - middle**2, 0.0))) / (1.0 + lost)) / step
+    z = (middle + 1j * np.sqrt(np.maximum(1.0 - lost**2 - middle**2, 0.0))) / (1.0 + lost)
+    return (functions.log(np.abs(z)) + 1j * functions.arctan2(z.imag, z.real)) / step
 
 
 def swing(values: np.ndarray, step: float, rest: float, omegas: np.ndarray, ratios: np.ndarray) -> Swing:
