@@ -57,7 +57,7 @@ class _Shaking:
 class TimeHistory:
     """One run: a structure under one motion of the ground."""
 
-    LASTING = frozenset(("job", "ground", "case", "damping", "sim", "step", "track", "snapshots"))
+    LASTING = frozenset(("job", "ground", "case", "damping", "sim", "step", "track", "snapshots", "braked"))
 
     def __init__(self, job: Job, ground: GroundMotion):
         self.job, self.ground, self.case = job, ground, job.case
