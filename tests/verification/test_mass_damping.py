@@ -112,3 +112,13 @@ def test_mass_damping_of_elastic_vibration_is_what_was_asked_for():
     assert summary["energy_shares"]["mass"] == pytest.approx(1.0)
     assert summary["largest_displacement"] > 1e-4
     assert not [text for text in summary["warnings"] if "mass-proportional" in text]
+
+
+def test_a_fragility_says_it_as_well():
+    """Under a pulse of 3 m/s² that makes the block rock and leaves it standing."""
+    case = tilted({"mass": 3.0}, 1.0)
+    case["analysis"] = {"kind": "fragility", "intensities": [3.0]}
+    case["motion"] = {"kind": "pulse", "amplitude": 1.0, "frequency": 2.0}
+    del case["initial"]
+    warnings = engine.solve(case)[0]["warnings"]
+    assert any("of blocks that rock, slide or fall in one of the runs" in text for text in warnings)
