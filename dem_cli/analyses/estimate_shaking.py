@@ -12,6 +12,7 @@ from dem_cli.dynamics.frequencies import modes, system
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import duration_of
 from dem_cli.dynamics.time_step import TimeStep, time_step
+from dem_cli.dynamics.vibration_error import refined
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.record_search import records_of, runs_per_record
 from dem_cli.motion.ground_motions import motions_of
@@ -32,13 +33,23 @@ def describe_shaking(case: Case, sim: DynamicSimulation, automatic: bool) -> lis
     """
     analysis = case.analysis
     step = time_step(sim, analysis.margin, analysis.time_step, sim.damping.stiffening)
+    ground = GroundMotion(_motions(case), sim.model)
+    step, drifts = refined(step, sim, ground.motions, duration_of(case, ground), analysis)
     return [
         ("damping", sim.damping.words),
         ("highest frequency", step.cause),
         ("time step", _step(step)),
+        *([("vibrations", drifts)] if drifts else []),
         ("first frequency", _first(sim)),
         *_cost(case, sim, step, automatic),
     ]
+
+
+def _motions(case: Case) -> list[Motion]:
+    """All motions of a study, those of a single run."""
+    if case.analysis.kind != "fragility":
+        return motions_of(case)
+    return [motion for record in records_of(case) for motion in record.components]
 
 
 def _step(step: TimeStep) -> str:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.dynamics.bending_stiffness import bending_doubts
+from dem_cli.dynamics.braked_motion import braked_words
 from dem_cli.dynamics.coda import undecided
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import duration_of
@@ -21,7 +22,16 @@ from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 from dem_cli.engine.job import Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, Task, each
-from dem_cli.ensembles.capacities import Bounds, Outcomes, bounds_of, distribution, outcomes, split, survived_above
+from dem_cli.ensembles.capacities import (
+    Bounds,
+    Outcomes,
+    between,
+    bounds_of,
+    distribution,
+    outcomes,
+    split,
+    survived_above,
+)
 from dem_cli.ensembles.record_search import bisection, records_of, runs_per_record, scaled
 from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure
 from dem_cli.ensembles.variants import Variant
@@ -122,9 +132,12 @@ class FragilityStudy:
         bounds = {pair: bounds_of(runs) for pair, runs in found.items()}
         complete = [r for r in range(len(self.records)) if all(bounds[s, r] is not None for s in structures)]
         if not complete:
-            raise SolverError(f"no run has a result; the first: {next(iter(self.batcher.done.values())).how}")
+            first = min(self.batcher.done.items())[1]
+            remedy = "; a longer analysis.coda may tell how it ends" if first.ending == MOVES else ""
+            raise SolverError(f"no record has a result; the first: {first.how}{remedy}")
         self._warn_failed()
         table = np.array([[bounds[s, r] for s in structures] for r in complete], float)
+        intervals = len(np.unique(table.reshape(-1, 2), axis=0))
         levels = list(self.analysis.levels)
         answer: dict[str, Any] = {
             "status": "ok",
@@ -132,6 +145,7 @@ class FragilityStudy:
             "collapse_intensities": [_upper(bounds[0, r]) for r in range(len(self.records))],
             "stood_up_to": [_lower(bounds[0, r]) for r in range(len(self.records))],
             **distribution(table, levels, self.analysis.confidence, self.settings.statistics),
+            "median_between": None,
             "never_collapsed": int(np.isinf(table[:, :, 1]).sum()),
             "collapsed_at_lowest": int((table[:, :, 0] == 0.0).sum()),
             "unit_acceleration": self.analysis.unit_acceleration,
@@ -145,7 +159,11 @@ class FragilityStudy:
             if survived_above(runs) and (fell := bounds[s, r]) is not None
         ]
         answer["non_monotone"] = above
-        self._warn_about(answer, len(np.unique(table.reshape(-1, 2), axis=0)))
+        self._warn_about(answer, intervals)
+        if answer["median"] is not None and intervals <= self.settings.statistics.few:
+            low, high = between(table)
+            answer |= dict.fromkeys(("median", "dispersion", "confidence", "curve"))
+            answer["median_between"] = [low, high if math.isfinite(high) else None]
         if len(structures) > 1:
             answer["repeats"] = {
                 "structures": structures[1:],
@@ -156,7 +174,7 @@ class FragilityStudy:
 
     def _warn_failed(self) -> None:
         done = self.batcher.done
-        failed = [(t, run) for t, run in sorted(done.items()) if run.collapsed is None]
+        failed = [(t, run) for t, run in sorted(done.items()) if not run.ending]
         for trial, run in failed[:MOST_LISTED]:
             self.warnings.append(f"{self.names[trial.record]} at {trial.intensity:g}: {run.how}")
         if failed:
@@ -167,10 +185,10 @@ class FragilityStudy:
         """What a reader of the curve must know; intervals: different bounds of capacities."""
         if answer["median"] is not None and intervals <= self.settings.statistics.few:
             self.warnings.append(
-                f"all collapse intensities lie in {intervals} intervals between levels: the dispersion is not "
-                "resolved, closer levels are needed"
+                f"all collapse intensities lie in {intervals} interval{'s' * (intervals > 1)} between levels: median "
+                "and dispersion are not resolved, closer levels are needed"
             )
-        if answer["median"] is not None and answer["confidence"] is None:
+        elif answer["median"] is not None and answer["confidence"] is None:
             self.warnings.append(
                 "fewer than 2 records both stood and fell: median and dispersion have no confidence band, take "
                 "more records or other intensities"
@@ -185,6 +203,9 @@ class FragilityStudy:
                 "each run hangs on chance: rocking is ill-conditioned, and structures that differ by 0.1 % fall at "
                 "other intensities; repeats = 5 shows by how much"
             )
+        braked = max((run.braked for run in self.batcher.done.values()), default=0.0)
+        if braked > self.settings.doubts.governs:
+            self.warnings.append(braked_words(self.case, braked, " in one of the runs"))
         worst = _worst(run.closure for run in self.batcher.done.values() if run.collapsed is False)
         if worst is not None and abs(worst) > self.settings.doubts.closure:
             self.warnings.append(f"the energy of a run that stood does not close: {worst:.2%} is missing")
@@ -218,6 +239,7 @@ class FragilityStudy:
             "steps": sum(run.steps for run in done),
             "seconds": sum(run.seconds for run in done),
             "threads": self.batch.threads,
+            "still_moving": sum(run.ending == MOVES for run in done),
             "energy_closure": _worst(run.closure for run in done if run.collapsed is False),
             "energy_closure_of_collapses": _worst(run.closure for run in done if run.collapsed),
         }

@@ -6,6 +6,7 @@ with their compliance: peaks that hold on joints ten times as soft hold on stiff
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from dem_cli.engine.measures import largest_displacement
 from dem_cli.engine.settings import Settings
 from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult
 from dem_cli.ensembles.variants import Variant
+from dem_cli.output.record import MONITOR_UNITS
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Monitor
@@ -51,10 +53,14 @@ def checked(
     factor, said = f"on joints {rocking.softer:g} times as soft", ""
     if run is None or not run.ending:
         job.skipped.append(f"a second run {factor}: {'it does not stand' if run is None else run.how}")
-    elif bool(run.collapsed) != bool(collapsed):
+    elif run.collapsed is None:
+        said = f"{factor} it is {run.how}: whether it falls there is not known"
+    elif run.collapsed != bool(collapsed):
+        job.contradictions.append(f"on softer joints it {'collapses' if run.collapsed else 'stands'}")
         said = f"{factor} the structure {'collapses' if run.collapsed else 'survives'}: {WHY}"
     elif not collapsed:
-        moved = change(history.peaks, np.array(run.peaks))
+        least = trifles(job.case.monitor, history.peaks, history.sim.smallest, job.case.gravity, settings)
+        moved = change(history.peaks, np.array(run.peaks), least)
         found["softer_joints_move"] = float(moved.max()) if len(moved) else None
         said = _doubts(job, factor, moved, rocking.moved)
     if chosen.turn > rocking.doubtful:
@@ -73,10 +79,28 @@ def _measured(factor: str, run: ShakenRunResult | None, moved: float | None) -> 
     return "how much that matters was not found, a given kn may show it"
 
 
-def change(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """How far peaks differ, over the larger of both; 0 where there is none."""
+def trifles(
+    monitors: Sequence[Monitor], peaks: np.ndarray, smallest: float, gravity: float, settings: Settings
+) -> np.ndarray:
+    """Peaks that do not matter, (n,): a small share of the largest one of the same quantity, or what is no motion.
+
+    That is what counts as none of a block with an edge `smallest` [m]: so much of its size, of a turn of 1 rad, and of
+    what it gains in speed as it falls by its size under `gravity` [m/s²].
+    """
+    share = settings.history.noticeable
+    speed = math.sqrt(gravity * smallest)
+    size = {"m": smallest, "rad": 1.0, "m/s": speed, "m/s2": gravity}
+    found = [share * size.get(MONITOR_UNITS[monitor.quantity], 0.0) for monitor in monitors]
+    for i, monitor in enumerate(monitors):
+        alike = [peak for peak, other in zip(peaks.tolist(), monitors) if other.quantity == monitor.quantity]
+        found[i] = max(found[i], share * max(alike))
+    return np.array(found)
+
+
+def change(one: np.ndarray, other: np.ndarray, least: np.ndarray) -> np.ndarray:
+    """How far peaks differ, over the larger of both; 0 where neither is above what matters at least."""
     larger = np.maximum(one, other)
-    return np.abs(other - one) / np.where(larger > 0.0, larger, 1.0)
+    return np.where(larger > least, np.abs(other - one) / np.where(larger > 0.0, larger, 1.0), 0.0)
 
 
 def _run(job: Job, motions: Sequence[Motion], settings: Settings) -> ShakenRunResult | None:

@@ -67,6 +67,7 @@ def run(
         found = repeated(case, model, observer, job.settings, batch or Batch())
         outcome.summary["warnings"] += found.pop("warnings")
         outcome.summary["warnings"] += alone(case, history.peaks, found["repeats"], settings.rocking.spread)
+        outcome.summary["contradictions"] += otherwise(outcome.summary["collapsed"], found["repeats"])
         outcome.summary |= found
     return outcome
 
@@ -94,7 +95,7 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
     batcher.work([*each(trials)], say)
     runs = [batcher.done[trial] for trial in trials]
     observer.runs(_rows(trials, runs, structures, max((motion.peak for motion in motions), default=0.0)))
-    warnings = [f"structure {1 + t.structure}: {run.how}" for t, run in zip(trials, runs) if run.collapsed is None]
+    warnings = [f"structure {1 + t.structure}: {run.how}" for t, run in zip(trials, runs) if not run.ending]
     fell = case.analysis.repeats - len(trials)
     if fell:
         warnings.append(f"{fell} of {case.analysis.repeats} perturbed structures do not stand: left out")
@@ -108,18 +109,18 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
 
 
 def spread(runs: Sequence[ShakenRunResult], n_monitors: int) -> dict[str, Any]:
-    """How many collapsed, and the percentiles of the peaks of the others: a list, None for each where none stood.
+    """How many collapsed, and the percentiles of the peaks of those that stood: a list, None for each where none did.
 
-    still_moving: those of which nobody knows it, when the time after the motion is over; among the others.
+    still_moving: those of which nobody knows it, when the time after the motion is over; neither standing nor fallen.
     """
-    stood = [run.peaks for run in runs if not run.collapsed]
+    stood = [run.peaks for run in runs if run.collapsed is False]
     peaks = np.array(stood).reshape(len(stood), n_monitors)
-    collapsed, moving = len(runs) - len(peaks), sum(run.ending == MOVES for run in runs)
+    collapsed, moving = sum(bool(run.collapsed) for run in runs), sum(run.ending == MOVES for run in runs)
     columns = [
         {name: float(np.percentile(column, q)) for name, q in PERCENTILES.items()} if len(column) else None
         for column in peaks.T
     ]
-    share = collapsed / len(runs) if runs else None
+    share = collapsed / (len(runs) - moving) if len(runs) > moving else None
     counts = {"runs": len(runs), "collapsed": collapsed, "still_moving": moving}
     return counts | {"share_collapsed": share, "peaks": columns}
 
@@ -127,7 +128,7 @@ def spread(runs: Sequence[ShakenRunResult], n_monitors: int) -> dict[str, Any]:
 def alone(case: Case, peaks: np.ndarray, repeats: dict[str, Any], allowed: float) -> list[str]:
     """Words for peaks that repeats scatter widely, or do not reach or pass; the first of each kind is named."""
     wide, outside = [], []
-    runs = repeats.get("runs", ENOUGH) - repeats.get("collapsed", 0)
+    runs = repeats.get("runs", ENOUGH) - repeats.get("collapsed", 0) - repeats.get("still_moving", 0)
     for monitor, peak, found in zip(case.monitor, peaks.tolist(), repeats["peaks"]):
         if found is None:
             continue
@@ -138,6 +139,15 @@ def alone(case: Case, peaks: np.ndarray, repeats: dict[str, Any], allowed: float
         if found["p84"] - found["p16"] > allowed * found["median"]:
             wide.append(f"the peak {name} hangs on chance: structures that differ by next to nothing have {between}")
     return [f"{texts[0]}{_more(texts)}: quote the spread, not the peak" for texts in (outside, wide) if texts]
+
+
+def otherwise(collapsed: bool | None, repeats: dict[str, Any]) -> list[str]:
+    """Words for repeats that end otherwise than the run beside them; none where it does not know how it ends."""
+    fell, runs = repeats["collapsed"], repeats["runs"]
+    stood = runs - fell - repeats["still_moving"]
+    if collapsed is False and fell:
+        return [f"{fell} of {runs} perturbed structures collapsed"]
+    return [f"{stood} of {runs} perturbed structures stood"] if collapsed and stood else []
 
 
 def _more(texts: Sequence[str]) -> str:

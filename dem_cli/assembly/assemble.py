@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -112,7 +113,7 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
         problems.append(CaseProblem((), "there are no blocks; give a [[structure]] or a [[block]]"))
     if problems:
         raise CaseError(problems)
-    return _sorted(blocks), aliases(local)
+    return _sorted([replace(block, rank=k) for k, block in enumerate(blocks)]), aliases(local)
 
 
 def _check_corners(blocks: Sequence[Block]) -> None:
@@ -193,6 +194,7 @@ def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Mo
         aliases=tuple(names.items()),
         pieces=_pieces(case, blocks),
         courses=_courses(case, blocks),
+        ranks=np.array([block.rank for block in blocks], np.int64),
     )
     return _with_modes(case, model)
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from dem_cli.arithmetic import functions
 from dem_cli.assembly.assemble import joint_table
-from dem_cli.case.plausibility import SHAKES, BlockSizes, size_doubts
+from dem_cli.case.cross_references import SHAKES
+from dem_cli.case.plausibility import BlockSizes, size_doubts
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseProblem
 from dem_cli.geometry.convex import distance

@@ -17,7 +17,8 @@ SELECTING = (  # that select blocks
     "imperfection", "load", "pressure", "fill", "strain", "restraint", "settlement", "initial", "monitor"
 )  # fmt: skip
 LINKS = ("tie", "reinforcement")
-WITH_REAL_MASSES = ("time-history", "fragility", "modes")
+SHAKES = ("time-history", "fragility")  # kinds of analysis that take place in time
+WITH_REAL_MASSES = (*SHAKES, "modes")
 REACTIONS = ("reaction", "reaction_moment")  # quantities of monitors of what holds blocks
 OF_CUTS = ("normal_force", "shear_force", "moment", "shear_force_across", "moment_across", "torsion")  # and of cuts
 WITH_LIVE_LOADS = ("load", "pressure")
@@ -69,6 +70,7 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
         found.append(CaseProblem(("analysis", "kind"), "'settlement' needs a [[settlement]]"))
     found += [*strained_blocks(data), *controlled_monitor(data, analysis.get("of"))]
     found += [*reactions_in_time(data, analysis.get("kind")), *following_loads(data, analysis)]
+    found += weightless_joints(data, analysis.get("kind"))
     if not data.get("structure") and not data.get("block"):
         found.append(CaseProblem((), "no blocks: the case needs a [[structure]] or a [[block]]"))
     return found
@@ -103,6 +105,19 @@ def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
         for path, quantity in asked
         if quantity in (*REACTIONS, *OF_CUTS)
     ]
+
+
+def weightless_joints(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
+    """Joints of a time history whose stiffness goes by the weights of blocks, where these have none."""
+    gravity, joints = data.get("gravity"), data.get("joints")
+    if kind not in SHAKES or isinstance(gravity, bool) or gravity != 0 or not isinstance(joints, dict):
+        return
+    for name, joint in joints.items():
+        if isinstance(joint, dict) and joint.get("kn", "auto") == "auto":
+            where = f"0 is not allowed in kind = {show(kind)} where joints.{name}.kn is 'auto'"
+            message = f"{where}, which goes by the weights of blocks; give kn [Pa/m]"
+            yield CaseProblem(("gravity",), message)
+            return
 
 
 def following_loads(data: dict[str, Any], analysis: dict[str, Any]) -> Iterator[CaseProblem]:

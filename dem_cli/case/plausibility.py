@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from dem_cli.case.base import CaseModel
+from dem_cli.case.cross_references import SHAKES
 from dem_cli.case.schema import Case
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseProblem, KeyPath
 
-SHAKES = ("time-history", "fragility")  # kinds of analysis that take place in time
 NO_SLIP = (5.0, 10.0)  # friction coefficients that are written where joints must not slip; and from LOCKED on
 LOCKED = 90.0  # no angle in degrees
 MANY = 10  # blocks: so many are not as large as one that stands for a whole wall

@@ -17,6 +17,7 @@ from dem_cli.version import __version__
 if TYPE_CHECKING:
     from dem_cli.case.reader import LoadedCase
     from dem_cli.motion.eurocode import TargetSpectrum
+    from dem_cli.motion.eurocode_suites import Clause
     from dem_cli.motion.intensity_measures import SpectrumFit
     from dem_cli.motion.motion import Motion
 
@@ -33,6 +34,7 @@ class RecordGroup(NamedTuple):
     target: TargetSpectrum | None  # what they were made to fit
     fit: SpectrumFit | None
     chosen: int  # which of them a time history uses
+    clauses: Sequence[Clause] = ()  # of Eurocode 8, for suites made to fit a spectrum
 
 
 @click.command("motion", short_help="Measure, write and draw the ground motions of a case.")
@@ -64,6 +66,7 @@ def command(case: str, overrides: Sequence[str], output: Path | None, as_json: b
 def groups_of(loaded: LoadedCase, compare: bool = True) -> list[RecordGroup]:
     """The records of every table. Raises UsageError for a case without motion, CaseError on a bad record."""
     from dem_cli.motion.eurocode import target_of
+    from dem_cli.motion.eurocode_suites import clauses
     from dem_cli.motion.ground_motions import suites_of
     from dem_cli.motion.intensity_measures import fit
 
@@ -77,15 +80,18 @@ def groups_of(loaded: LoadedCase, compare: bool = True) -> list[RecordGroup]:
     groups = []
     for table, motions in zip(tables, suites):
         target = compared = None
+        judged: Sequence[Clause] = ()
         if table.kind == "artificial":
             target = target_of(table).scaled(abs(table.scale))
             compared = fit(motions, target, table.first_period) if compare else None
-        groups.append(RecordGroup(motions, target, compared, getattr(table, "number", 1) - 1))
+            judged = clauses(motions, table) if compare else ()
+        groups.append(RecordGroup(motions, target, compared, getattr(table, "number", 1) - 1, judged))
     return groups
 
 
 def summarised(loaded: LoadedCase, groups: Sequence[RecordGroup]) -> dict[str, Any]:
     """What summary.json holds."""
+    from dem_cli.motion.eurocode_suites import meets, verdict
     from dem_cli.motion.intensity_measures import strength
     from dem_cli.output.summary import ordered
 
@@ -106,7 +112,9 @@ def summarised(loaded: LoadedCase, groups: Sequence[RecordGroup]) -> dict[str, A
                     "periods": [group.fit.periods[0], group.fit.periods[-1]],
                     "mean_peak_ratio": group.fit.mean_peak,
                     "least_mean_ratio": group.fit.least_mean,
-                    "meets_eurocode_8": group.fit.meets,
+                    "meets_eurocode_8": meets(group.clauses),
+                    "clauses": {clause.number: clause.met for clause in group.clauses},
+                    "verdict": verdict(group.clauses),
                 }
             )
     return ordered(
@@ -208,11 +216,10 @@ def answer(summary: dict[str, Any], folder: Path) -> str:
         lines.append("  " + "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]))
     for fit in summary["suites"]:
         low, high = fit["periods"]
-        verdict = "meets" if fit["meets_eurocode_8"] else "DOES NOT MEET"
         lines.append(
             f"  {fit['target']}: mean of {fit['records']} is at least {fit['least_mean_ratio']:.3f} of it "
             f"({low:.3g} to {high:.3g} s), mean peak {fit['mean_peak_ratio']:.3f} of the ground acceleration: "
-            f"{verdict} EN 1998-1 3.2.3.1.2(4)b, c"
+            f"{fit['verdict']}"
         )
     return "\n".join([*lines, f"  written to {shown(folder)} ({', '.join(file_names(folder))})"])
 

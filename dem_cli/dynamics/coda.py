@@ -100,8 +100,8 @@ def undecided(moving: int, runs: int, coda: float) -> list[str]:
     if not moving:
         return []
     return [
-        f"{moving} of {runs} runs still moved {coda:g} s after the motion and count as standing: a longer "
-        "analysis.coda may tell whether they fall"
+        f"{moving} of {runs} runs still moved {coda:g} s after the motion and are left out, neither standing nor "
+        "fallen: a longer analysis.coda may tell which"
     ]
 
 

@@ -50,6 +50,7 @@ class GroundMotion:
             (motion, {i for name in motion.blocks for i in model.chosen(name, True).tolist()}) for motion in motions
         ]
         own = {i: [motion for motion, blocks in named if i in blocks] for i in np.flatnonzero(model.fixed).tolist()}
+        self.motions = motions
         self.base = [motion for motion in motions if not motion.blocks]
         shared = next(iter(own.values()), [])
         if shared and all(found == shared for found in own.values()):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.dynamics.braked_motion import BrakedMotion, braked_words
 from dem_cli.dynamics.coda import Ending, ending
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen_blocks
 from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
@@ -18,6 +19,7 @@ from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.initial_state import set_initial
 from dem_cli.dynamics.snapshots import Snapshots
 from dem_cli.dynamics.time_step import TimeStep, time_step
+from dem_cli.dynamics.vibration_error import refined
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.engine.dynamic import DynamicSimulation, no_watch
@@ -55,7 +57,7 @@ class _Shaking:
 class TimeHistory:
     """One run: a structure under one motion of the ground."""
 
-    LASTING = frozenset(("job", "ground", "case", "damping", "sim", "step", "track", "snapshots"))
+    LASTING = frozenset(("job", "ground", "case", "damping", "sim", "step", "track", "snapshots", "braked"))
 
     def __init__(self, job: Job, ground: GroundMotion):
         self.job, self.ground, self.case = job, ground, job.case
@@ -67,6 +69,7 @@ class TimeHistory:
         self.overlap, self.peaks = 0.0, np.zeros(len(job.case.monitor))  # of all monitors, before a collapse is seen
         self.closed: float | None = None  # error of the energy book when a collapse was seen
         self.farthest = 0.0  # that a block went against the ground [m], look by look
+        self.braked = BrakedMotion(self.sim)
 
     def _simulation(self) -> tuple[DynamicSimulation, TimeStep]:
         """The simulation, with laws that know the time step."""
@@ -80,6 +83,8 @@ class TimeHistory:
         if not found.held and analysis.time_step is None:
             history = self.job.settings.history
             found = found._replace(step=min(found.step, history.loose_step, history.loose_share * self.duration))
+        found, drifts = refined(found, sim, self.ground.motions, self.duration, analysis)
+        self.job.warnings += [drifts] if drifts else []
         if any(law.rates for law in laws_of(self.case)):
             sim = self.job.clock.compiled(lambda: make(found.step))
         return sim, found
@@ -225,6 +230,7 @@ class TimeHistory:
         sim = self.sim
         row = self.track.write("shaking")
         self.overlap = max(self.overlap, row.overlap)
+        self.braked.look(sim)
         check_energy(sim, self.step, row.energy)
 
     def _outcome(self, found: dict[str, Any]) -> Outcome:
@@ -238,6 +244,10 @@ class TimeHistory:
                 "slows every motion; use it for nothing but a test"
             )
         self._doubt_what_follows()
+        braked = 0.0 if fell else self.braked.share(sim, measures.energy(sim))
+        if braked > self.job.settings.doubts.governs:
+            self.job.warnings.append(braked_words(self.case, braked))
+            self.job.contradictions.append(f"mass damping took {100.0 * braked:.0f} % of the energy")
         return self.job.outcome([sim], found | {
             "time_step": self.step.step,
             "largest_time_step": self.step.limit,
@@ -249,6 +259,7 @@ class TimeHistory:
             "largest_overlap": self.overlap,
             "unbalanced_force": None,
             "joint_state": joint_state(sim, END),
+            "contradictions": self.job.contradictions,
         })  # fmt: skip
 
     def _doubt_what_follows(self) -> None:

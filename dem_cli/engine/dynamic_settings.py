@@ -46,6 +46,11 @@ class HistorySettings:
     energy_every: int = 10  # looks from one look into the books to the next
     loose_step: float = 1e-4  # s: the time step where no joint limits it, at most
     loose_share: float = 1e-3  # of the duration: the same
+    drift: float = (
+        0.01  # of the largest displacement: error of elastic vibrations above which the step is shortened ...
+    )
+    shortest: float = 0.1  # ... to no less than this share
+    modes: int = 12  # the slowest, which are looked at for it where there are many
     noticeable: float = 1e-3  # of the smallest edge: energy that lifts the whole structure by it, ways that are none
     still: float = 0.01  # unbalanced force, in weights of a block, below which it has come to rest ...
     quiet: float = 1e-3  # ... with so much of the noticeable energy at most

@@ -45,6 +45,7 @@ class Job:
     settings: Settings = DEFAULT
     skipped: list[str] = field(default_factory=list)  # what the case did not need
     warnings: list[str] = field(default_factory=list)
+    contradictions: list[str] = field(default_factory=list)  # of how it ended, which stand beside that
 
     @classmethod
     def start(cls, case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Job:

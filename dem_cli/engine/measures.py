@@ -202,7 +202,7 @@ def closure(sim: Simulation, books: Energy | None = None) -> float:
     books: `energy` of this instant, if that is known.
     """
     e = books or energy(sim)
-    error = e.kinetic + e.elastic + e.gravity + _taken(e) + e.reweighting - e.external - e.supports
+    error = e.kinetic + e.elastic + e.gravity + taken(e) + e.reweighting - e.external - e.supports
     largest = _largest(sim, e)
     return float(error / largest) if largest > 0.0 else 0.0
 
@@ -228,14 +228,14 @@ def reweighting_shares(sim: Simulation) -> tuple[float, float]:
     return float(net), float(total)
 
 
-def _taken(e: Energy) -> float:
+def taken(e: Energy) -> float:
     """Energy that friction and all kinds of damping took [J]."""
     return e.friction + e.damping + e.dashpots + e.mass_damping + e.maxwell
 
 
 def _largest(sim: Simulation, e: Energy) -> float:
     """The largest energy in the ledger, or kinetic so far [J]."""
-    return max(abs(e.external), abs(e.gravity), abs(e.supports), e.elastic, _taken(e), sim.most_kinetic)
+    return max(abs(e.external), abs(e.gravity), abs(e.supports), e.elastic, taken(e), sim.most_kinetic)
 
 
 def contact_points(sim: Simulation, blocks: np.ndarray) -> np.ndarray:

@@ -24,7 +24,7 @@ class Bounds(NamedTuple):
     upper: float  # infinite: never fell
 
 
-Outcomes = dict[float, bool]  # collapsed at an intensity, ascending; without the runs that failed
+Outcomes = dict[float, bool]  # collapsed at an intensity, ascending; without runs that failed or still moved
 
 
 def outcomes(done: Mapping[ShakingTrial, ShakenRunResult], structure: int, record: int) -> Outcomes:
@@ -49,6 +49,15 @@ def survived_above(found: Outcomes) -> list[float]:
     """Intensities that it survived although it fell at a lower one."""
     lowest = min((a for a, fell in found.items() if fell), default=math.inf)
     return [a for a, fell in found.items() if not fell and a > lowest]
+
+
+def between(bounds: np.ndarray) -> tuple[float, float]:
+    """Intensities between which half of all capacities fall, by their bounds alone; the upper one may be infinite.
+
+    bounds: (n_records, n_structures, 2). Of an even number the lower and the upper one of the two in the middle count.
+    """
+    lower, upper = np.sort(bounds.reshape(-1, 2), axis=0).T
+    return float(lower[(len(lower) - 1) // 2]), float(upper[len(upper) // 2])
 
 
 def distribution(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from dem_cli.ensembles.batch import Answer, ShakingTrial, Task
 from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.motion.ground_motions import suites_of
+from dem_cli.output.record import MOVES
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -78,7 +79,8 @@ def bisection(analysis: FragilityAnalysis, structure: int, record: int) -> Task:
     """A task that finds an intensity survived and a higher one that was not, next to each other."""
 
     def falls(answer: Answer, intensity: float) -> bool | None:
-        return answer(ShakingTrial(structure, record, intensity)).collapsed
+        run = answer(ShakingTrial(structure, record, intensity))
+        return False if run.ending == MOVES else run.collapsed  # what is not known bounds nothing: looked for above it
 
     def among_levels(answer: Answer) -> None:
         low, high = -1, len(analysis.levels)

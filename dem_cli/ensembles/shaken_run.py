@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.dynamics.braked_motion import BrakedMotion
 from dem_cli.dynamics.coda import Ending, ending
 from dem_cli.dynamics.collapse_criterion import check_energy, check_finite, fallen
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
 from dem_cli.engine.job import Job
-from dem_cli.engine.measures import closure
+from dem_cli.engine.measures import closure, energy
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.output.record import COLLAPSED, Observer
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 class ShakenRunResult(NamedTuple):
     """Outcome of one structure under one ground motion."""
 
-    collapsed: bool | None  # before the time after the motion was over; None: it failed
+    collapsed: bool | None  # before the time after the motion was over; None: it failed, or still moved then
     time: float | None  # of the collapse [s]
     how: str  # the block that collapsed and how, that nobody knows whether one will, or why the run failed
     peaks: tuple[float, ...]  # largest absolute value of each monitor, up to the collapse
@@ -39,6 +40,7 @@ class ShakenRunResult(NamedTuple):
     closure: float | None  # energy error over the largest energy
     seconds: float  # CPU of the thread [s]
     ending: str = ""  # one of those of output/record.py; empty where the run failed
+    braked: float = 0.0  # share of the energy that mass damping took from blocks that rock, slide or fall
 
 
 class RunCancelled(Exception):
@@ -109,16 +111,17 @@ class RestedStructure:
         begun = time.thread_time()
         sim = deepcopy(self.sim)
         ground = GroundMotion([motion.scaled(self.variant.motion) for motion in motions], self.variant.model)
-        peaks = LargestValues(len(self.case.monitor))
+        peaks, braked = LargestValues(len(self.case.monitor)), BrakedMotion(sim)
         collapsed, at, balance, word = None, None, None, ""
         try:
-            end = self._shake(sim, ground, peaks, cancelled, told)
+            end = self._shake(sim, ground, peaks, braked, cancelled, told)
         except SolverError as error:
             how = str(error)
         else:
-            collapsed, at, how, balance, word = end.how == COLLAPSED, end.time, end.why, closure(sim), end.how
+            collapsed, at, how, balance, word = end.collapsed, end.time, end.why, closure(sim), end.how
         steps, seconds = sim.steps - self.sim.steps, time.thread_time() - begun
-        return ShakenRunResult(collapsed, at, how, tuple(peaks.values.tolist()), steps, balance, seconds, word)
+        share = braked.share(sim, energy(sim)) if word else 0.0
+        return ShakenRunResult(collapsed, at, how, tuple(peaks.values.tolist()), steps, balance, seconds, word, share)
 
     @stage
     def _shake(
@@ -126,6 +129,7 @@ class RestedStructure:
         sim: DynamicSimulation,
         ground: GroundMotion,
         peaks: LargestValues,
+        braked: BrakedMotion,
         cancelled: Callable[[], bool],
         told: Callable[[DynamicSimulation, float], None],
     ) -> Ending:
@@ -137,6 +141,7 @@ class RestedStructure:
             if cancelled():
                 raise RunCancelled
             self._stretch(sim, ground, n_steps, peaks if motion.done < total or self.peaks_of_coda else None)
+            braked.look(sim)
 
         sim.stages.resumed(motion)
         while motion.done < total:

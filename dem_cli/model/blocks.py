@@ -27,6 +27,7 @@ class Block:
     mass       of the whole block [kg]; None: by the density of its material
     crack      of a piece of a stone that can crack: the joint between its pieces; empty: it is a whole stone
     path       where in the case file it comes from, for error messages
+    rank       place among the blocks of the case, in its order
     """
 
     id: str
@@ -40,6 +41,7 @@ class Block:
     mass: float | None = None
     crack: str = ""
     path: KeyPath = field(default=(), compare=False)
+    rank: int = field(default=0, compare=False)
 
     @property
     def stone(self) -> str:

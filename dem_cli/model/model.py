@@ -75,6 +75,10 @@ class ModelArrays(NamedTuple):
     # Of structures whose head joints are not like their beds alone, else empty:
     courses: np.ndarray = NO_COURSES  # course that each block is laid in, by number, −1: none, and the row across that,
     # 0: it goes through all of them, (n_blocks, 2) int64
+    ranks: np.ndarray = (
+        NONE  # place of each block in the case file, in which order results have them, (n_blocks,) int64;
+    )
+    # empty: blocks are in that order
 
 
 SPATIAL_MODEL = ("part_faces", "face_starts", "face_corners", "principal_axes")  # empty in the plane
@@ -86,6 +90,7 @@ WHERE_ASKED_FOR = (
     "restrained",
     "pieces",
     "courses",
+    "ranks",
 )  # rows of blocks; empty where the case has nothing of it
 
 

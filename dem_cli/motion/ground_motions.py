@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 STRONGEST, WEAKEST = 10.0, 1e-4  # g: beyond these a record most likely has another unit
+NOTHING = 1e-9  # of the peak of a record: what a baseline leaves of it is round-off
 LIKELY = (0.005, 3.0)  # g: peaks of a unit that is proposed instead
 
 
@@ -136,7 +137,15 @@ def _record(table: RecordTable, i_table: int) -> Accelerogram:
     except RecordError as error:
         raise CaseError([CaseProblem(("motion", i_table, "file"), str(error))]) from None
     unit = _unit_of(table, series.quantity, series.unit, i_table)
-    made = record(series.times, SI_FACTORS[table.quantity][unit] * series.values, table.quantity, table.baseline_order)
+    values = SI_FACTORS[table.quantity][unit] * series.values
+    try:
+        made = record(series.times, values, table.quantity, table.baseline_order)
+    except RecordError as error:
+        message = f"{str(table.baseline).lower()} is not allowed for {Path(table.file).name}: {error}"
+        raise CaseError([CaseProblem(("motion", i_table, "baseline"), message)]) from None
+    if table.baseline_order is not None and made.peak <= NOTHING * record(series.times, values, table.quantity).peak:
+        message = f"takes out the whole motion of {Path(table.file).name}; leave it out, or take a lower order"
+        raise CaseError([CaseProblem(("motion", i_table, "baseline"), message)])
     if made.peak == 0.0:
         message = f"{Path(table.file).name}: no motion, every {table.quantity} is the same"
         raise CaseError([CaseProblem(("motion", i_table, "file"), message)])

@@ -7,6 +7,7 @@ import numpy as np
 from dem_cli.arithmetic import functions
 from dem_cli.arithmetic.small_matrices import least_squares
 from dem_cli.motion.piecewise_polynomial import PiecewisePolynomial
+from dem_cli.motion.record_text import RecordError
 
 MOTION_QUANTITIES = ("acceleration", "velocity", "displacement")
 
@@ -48,7 +49,7 @@ def record(
     displacement  a cubic spline through the samples, less the first, that starts with velocity 0: acceleration linear
     baseline      order of a polynomial taken from the acceleration, see `corrected`; None for none
 
-    times [s], values [m/s2, m/s or m], both (n,), n ≥ 2.
+    times [s], values [m/s2, m/s or m], both (n,), n ≥ 2. Raises RecordError as `corrected` does.
     """
     first = float(times[0])
     times, values = np.asarray(times, float) - first, np.asarray(values, float)
@@ -74,17 +75,25 @@ def corrected(acceleration: PiecewisePolynomial, order: int) -> PiecewisePolynom
     """`acceleration` less the polynomial of this order whose integral comes closest to the velocity.
 
     Closest in the sense of least squares over the samples, each with the time around it as its weight. The integral
-    is 0 at the start, so that the corrected velocity starts at 0 too; it ends near 0, not at it.
+    is 0 at the start, so that the corrected velocity starts at 0 too; it ends near 0, not at it. Where it would end
+    faster than it was, the closest of those polynomials is taken whose integral is the velocity at the end.
+    Raises RecordError where there are fewer samples than it needs.
     """
     from numpy.polynomial import Polynomial
 
     times = acceleration.x
+    if len(times) < order + 2:
+        raise RecordError(f"a baseline of order {order} needs at least {order + 2} samples; there are {len(times)}")
     end = times[-1]
     powers = np.arange(1, order + 2)
     weights = np.sqrt(np.gradient(times))
     basis = functions.power(times[:, None] / end, powers)
     velocity = acceleration.antiderivative()(times)
     fitted = least_squares(weights[:, None] * basis, weights * velocity)
+    if abs(velocity[-1] - fitted.sum()) > abs(velocity[-1]):  # the last coefficient makes the sum that at the end
+        others, last = basis[:, :-1] - basis[:, -1:], basis[:, -1]
+        free = least_squares(weights[:, None] * others, weights * (velocity - velocity[-1] * last))
+        fitted = np.append(free, velocity[-1] - free.sum())
     drift = Polynomial([0.0, *(fitted / functions.power(end, powers))]).deriv()  # of the acceleration
     taylor, factorial = [], 1.0  # about the start of each piece, lowest power first
     for k in range(order + 1):

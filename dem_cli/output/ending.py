@@ -11,7 +11,16 @@ _KNOWN = {STOOD: STOOD, ROCKS: f"stood, {ROCKS}", MOVES: "still moving at the en
 
 
 def ending_words(summary: Mapping[str, Any], digits: int = 4) -> str:
-    """How it ended and when; empty where a summary does not say. digits: of the time of a collapse."""
+    """How it ended and when, and what contradicts it; empty where a summary does not say.
+
+    digits: of the time of a collapse.
+    """
+    how = _how(summary, digits)
+    return "; ".join([how, *(summary.get("contradictions") or ())]) if how else ""
+
+
+def _how(summary: Mapping[str, Any], digits: int) -> str:
+    """How it ended, as the run itself says it."""
     fell = summary.get("collapsed")
     how = summary.get("ending") or (None if fell is None else COLLAPSED if fell else STOOD)
     if how != COLLAPSED:
@@ -25,6 +34,19 @@ def ending_words(summary: Mapping[str, Any], digits: int = 4) -> str:
 def last_words(summary: Mapping[str, Any]) -> str:
     """What the last values of monitors are: those of a structure at rest, or passing."""
     return "in the end" if summary.get("at_rest", True) else "at the end, still moving"
+
+
+def median_words(summary: Mapping[str, Any], digits: int = 4) -> str:
+    """Where half of the records collapse, as far as that is known; empty where it is not."""
+    if summary.get("median") is not None:
+        return f"{summary['median']:.{digits}g}"
+    between = summary.get("median_between")
+    if not between:
+        return ""
+    low, high = between
+    if high is None:
+        return f"above {low:.{digits}g}"
+    return f"between {low:.{digits}g} and {high:.{digits}g}" if low else f"below {high:.{digits}g}"
 
 
 def unfound_load(summary: Mapping[str, Any]) -> str:

@@ -107,7 +107,9 @@ def _of_modes(meaning: str, unit: str, axes: tuple[str, ...] = ("block", "mode")
 _COMPONENT, _COORDINATE = ("block", "component"), ("block", "coordinate")
 _INERTIA, _AXIS = "moment of inertia about the centroid", ("block", "axis")
 MODEL = {
-    "block_ids": Described("name of each block", WORDS, _BLOCK, kind=NAMES),
+    "block_ids": Described(
+        "name of each block, in the order of the case: structures, then blocks drawn by hand", WORDS, _BLOCK, kind=NAMES
+    ),
     "material_names": Described("name of each material", WORDS, ("material",), kind=NAMES),
     "block_material": Described("material of each block, by its number", PURE, _BLOCK, kind=WHOLE, counts="material"),
     "fixed": Described("whether the block cannot move", PURE, _BLOCK, kind=TRUTHS),

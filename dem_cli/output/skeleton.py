@@ -35,7 +35,7 @@ from dem_cli.output.record import MONITOR_UNITS, STAGES, STATES, Energy
 
 FRAMES_AT_ONCE = 8  # that space is made for: few are kept
 _TEXT = h5py.string_dtype()
-_UNSAID = ("aliases", "selections", "links", "link_names", "following")  # of a model: the case file says them
+_UNSAID = ("aliases", "selections", "links", "link_names", "following", "ranks")  # of a model: the case file says them
 _MOST_KEPT = 4
 _images: dict[Any, bytes] = {}
 

@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 
 from dem_cli.model.model import Model
+from dem_cli.output.case_order import CaseOrder
 from dem_cli.output.described_dataset import store_described
 from dem_cli.output.equilibrium_monitors import EquilibriumMonitors
 from dem_cli.output.folder import write_error
@@ -62,7 +63,8 @@ class ResultWriter:
         name: Path | None = None,
         quantities: Sequence[str] = (),
     ):
-        self.folder, self.model, self.monitors = Path(folder), model, tuple(monitors)
+        self.folder, self.monitors = Path(folder), tuple(monitors)
+        self._take(model)
         self.name = name or self.folder  # what messages call it
         self._named = [(name, link.kind) for name, link in _links_of(model)]
         self.kind, self.quantities = kind, tuple(quantities) or ("displacement",) * len(self.monitors)
@@ -82,6 +84,11 @@ class ResultWriter:
         self._vtk: ParaViewFiles | None = None
         self._series: SeriesWriter | None = None
         self._guarded(lambda: self._start(case_text, provenance))
+
+    def _take(self, model: Model) -> None:
+        """The structure of the frames to come, which is kept in the order of the case."""
+        self.drawn, self.order = model, CaseOrder(model)
+        self.model = self.order.model(model)
 
     def _start(self, case_text: str, provenance: Mapping[str, str]) -> None:
         (self.folder / CASE).write_text(case_text, encoding="utf-8", newline="\n")
@@ -132,12 +139,12 @@ class ResultWriter:
         """Frames to come are of this structure, not of that of the case. Raises ValueError after the first frame."""
         if self.n_frames:
             raise ValueError("frames of another structure are kept already")
-        self.model = model  # of modes and limit analysis: frames of it have no links
+        self._take(model)  # of modes and limit analysis: frames of it have no links
 
         def store() -> None:
             del self.dem["model"]
-            declare_model(self.dem.create_group("model"), model)
-            fill_model(self.dem["model"], model)
+            declare_model(self.dem.create_group("model"), self.model)
+            fill_model(self.dem["model"], self.model)
             self._flush()
 
         self._guarded(store)
@@ -227,21 +234,24 @@ class ResultWriter:
         stack, now = stacked(self._waiting), None
         first, n = self.n_frames - len(self._waiting), len(self._waiting)
         self._waiting.clear()
-        self._keep(stack)
         if self._joints is not None and self._joint_states is not None:
             now = self._joints.at(stack.positions, stack.orientations, stack.contacts)
             for name, values in now.states._asdict().items():
                 self._joint_states.append(name, values.reshape(n, -1))
+        stack = self.order.stack(stack)
+        self._keep(stack)
         self._vtk.add(stack.numbers("time") if self.kind in IN_SECONDS else first + np.arange(float(n)), stack, now)
 
     def _begin_frames(self, links: LinkRecord | None) -> None:
         """The files for ParaView, and what does not change of joints and links."""
-        joints = self._joints_of and self._joints_of(self.model)
+        joints = self._joints_of and self._joints_of(self.drawn)
+        links = links and self.order.links(links)
+        places = None
         if joints is not None and len(joints.places.area):
-            self._joints = joints
+            self._joints, places = joints, self.order.joints(joints.places)
             group = self.dem.create_group("joints")
             said, states = (declared(table, self.model.dimension) for table in (JOINT_PLACES, JOINT_STATES))
-            for name, values in joints.places.stored().items():
+            for name, values in places.stored().items():
                 store_described(group, name, values, said[name])
             self._joint_states = GrowingGroup(group, states, FRAMES_AT_ONCE)
         if links is not None:
@@ -252,7 +262,7 @@ class ResultWriter:
             for name, values in links.places._asdict().items():
                 store_described(group, name, values, said[name])
             self._links = GrowingGroup(group, said, FRAMES_AT_ONCE)
-        self._vtk = ParaViewFiles(self.model, self._joints, self._open, links and links.places)
+        self._vtk = ParaViewFiles(self.model, places, self._open, links and links.places)
         self.dem.parent["VTKHDF"] = h5py.ExternalLink(BLOCKS, "/VTKHDF")
 
     def _keep(self, stack: FrameStack) -> None:

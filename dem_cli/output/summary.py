@@ -37,6 +37,7 @@ ORDER = (
     "ending",
     "at_rest",
     "followed",
+    "contradictions",
     "peaks",
     "monitors",
     "joint_state",

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.output.ending import median_words
 from dem_cli.output.reader import Results
 from dem_cli.post import style
 
@@ -75,6 +76,7 @@ def _draw_levels(axis: Any, summary: Mapping[str, Any]) -> None:
 
 
 def _headline(figure: Any, summary: Mapping[str, Any]) -> None:
-    median, title = summary.get("median"), str(summary.get("title", ""))
-    text = title + (f": half collapse at {median:.3g}" if median is not None else ": no median")
+    median, title = median_words(summary, 3), str(summary.get("title", ""))
+    at = "" if summary.get("median_between") else "at "
+    text = title + (f": half collapse {at}{median}" if median else ": no median")
     figure.suptitle(text, x=0.01, ha="left", fontsize=min(12.0, 740.0 / len(text)), fontweight="bold")

@@ -9,7 +9,7 @@ import numpy as np
 
 from dem_cli.model.model import Model
 from dem_cli.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP, DOUBTFUL_REWEIGHTING, smallest_edge
-from dem_cli.output.ending import ending_words, unfound_load
+from dem_cli.output.ending import ending_words, median_words, unfound_load
 from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.paraview.vertices import size_in_words
 from dem_cli.output.reader import Results
@@ -96,7 +96,9 @@ def _shaken(summary: Mapping[str, Any]) -> tuple[str, str, str]:
 
 
 def _fragile(summary: Mapping[str, Any]) -> tuple[str, str, str]:
-    median = summary.get("median")
+    median, records = summary.get("median"), f"{len(summary.get('collapse_intensities') or ())} records"
+    if summary.get("median_between"):
+        return ("half collapse", median_words(summary), f"levels do not resolve it, {records}")
     if median is None:
         return ("half collapse at", "no median", str(summary.get("status", "")))
     sure = summary.get("confidence")
@@ -104,7 +106,7 @@ def _fragile(summary: Mapping[str, Any]) -> tuple[str, str, str]:
     if sure:
         more += f", {100 * sure['level']:.0f} % confidence {sure['median'][0]:.4g} to {sure['median'][1]:.4g}"
     unit = summary.get("unit_acceleration", 1.0)
-    more += f", {len(summary.get('collapse_intensities') or ())} records"
+    more += f", {records}"
     if unit == 1.0:
         return ("half collapse at", f"{median:.4g} m/s²", more)
     return ("half collapse at intensity", f"{median:.4g}", f"{median * unit:.3g} m/s², {more}")

@@ -20,14 +20,19 @@ class RayleighDamping(CaseModel):
         description="damping ratio at the given frequencies [-]", examples=[0.02]
     )
     frequency: Positive | None = Field(
-        default=None, description="where the ratio is least [Hz]; with one part alone: where it holds", examples=[10.0]
+        default=None, description="where the ratio holds [Hz]; with both parts it is least there", examples=[10.0]
     )
     frequencies: tuple[Positive, Positive] | None = Field(
         default=None,
         description="instead of frequency: two between which the ratio is at most the given one [Hz]",
         examples=[[2.0, 20.0]],
     )
-    mass: bool = Field(default=True, description="with the part that is proportional to mass")
+    mass: bool | None = Field(
+        default=None,
+        description="with the part that is proportional to mass, which brakes blocks that rock, slide or fall as well; "
+        "default: only with two frequencies, which need it, and where stiffness = false",
+        examples=[True],
+    )
     stiffness: bool = Field(default=True, description="with the part that is proportional to stiffness")
 
     @model_validator(mode="after")
@@ -36,13 +41,18 @@ class RayleighDamping(CaseModel):
             both = "'frequency' and 'frequencies' are"
             found = both if self.frequency else "neither 'frequency' nor 'frequencies' is"
             raise ValueError(f"{found} given; one of them says where the ratio holds")
-        if not (self.mass or self.stiffness):
+        if not (self.of_mass or self.stiffness):
             raise KeyProblem("false is not allowed where mass = false too: nothing would be damped", "stiffness")
         if self.frequencies is not None and not self.frequencies[0] < self.frequencies[1]:
             raise KeyProblem(f"{self.frequencies[1]:g} is not allowed; must be more than the first", "frequencies", 1)
-        if self.frequencies is not None and not (self.mass and self.stiffness):
+        if self.frequencies is not None and not (self.of_mass and self.stiffness):
             raise KeyProblem("two frequencies need both parts; one part alone needs 'frequency'", "frequencies")
         return self
+
+    @property
+    def of_mass(self) -> bool:
+        """Whether there is a part that is proportional to mass."""
+        return self.frequencies is not None or not self.stiffness if self.mass is None else self.mass
 
     def coefficients(self) -> tuple[float, float]:
         """a0 [1/s] of mass and a1 [s] of stiffness (Clough and Penzien, ch. 12)."""
@@ -51,8 +61,8 @@ class RayleighDamping(CaseModel):
             return 2.0 * self.ratio * low * high / (low + high), 2.0 * self.ratio / (low + high)
         assert self.frequency is not None
         omega = 2.0 * math.pi * self.frequency
-        share = 1.0 if self.mass and self.stiffness else 2.0
-        return share * self.ratio * omega * self.mass, share * self.ratio / omega * self.stiffness
+        share = 1.0 if self.of_mass and self.stiffness else 2.0
+        return share * self.ratio * omega * self.of_mass, share * self.ratio / omega * self.stiffness
 
 
 class MaxwellElement(CaseModel):
@@ -117,8 +127,8 @@ class DampingTable(CaseModel):
             raise KeyProblem(f"true is not allowed beside {others[0]}", "none")
         if not (self.none or others):
             raise ValueError(f"nothing is given; one of {', '.join(JOINTS)}, mass, maxwell, local, or none = true")
-        if self.mass is not None and self.rayleigh is not None and self.rayleigh.mass:
-            raise KeyProblem("not beside rayleigh, which has a part of mass already (rayleigh.mass = false)", "mass")
+        if self.mass is not None and self.rayleigh is not None and self.rayleigh.of_mass:
+            raise KeyProblem("not beside rayleigh, which has a part of mass already", "mass")
         if self.block is not None and self.contact_fraction is None and self.restitution is None:
             raise KeyProblem("needs contact_fraction or restitution, which are those of a block", "block")
         return self

@@ -63,7 +63,7 @@ def test_the_table_of_a_suite(suite):
     lines = answer.stdout.splitlines()
     assert lines[0] == "Two drums"
     assert sum(line.startswith("  artificial ") for line in lines) == 7
-    assert "meets EN 1998-1 3.2.3.1.2(4)b, c" in answer.stdout
+    assert "meets EN 1998-1 3.2.3.1.2 (3), (4)a, (4)b, (4)c" in answer.stdout
     assert {path.name for path in (folder / "out").iterdir()} == {
         "summary.json", "spectra.png", "motion.png", "records",
     }  # fmt: skip
@@ -80,8 +80,20 @@ def test_the_summary(suite):
     assert 0 < first["least_ratio"] <= first["mean_ratio"]
     (found,) = summary["suites"]
     assert found["meets_eurocode_8"] is True
+    assert found["clauses"] == {"(3)": True, "(4)a": True, "(4)b": True, "(4)c": True}
     assert found["least_mean_ratio"] >= 0.9
     assert found["mean_peak_ratio"] >= 1.0
+
+
+def test_a_suite_of_two_says_what_eurocode_8_asks_for(tmp_path):
+    (tmp_path / "drums.toml").write_text(CASE + SUITE.replace("count = 7\nnumber = 3", "count = 2\nplateau = 6.0"))
+    answer = dem("motion", tmp_path / "drums.toml", "-o", tmp_path / "out")
+    assert (
+        "DOES NOT MEET EN 1998-1 3.2.3.1.2 (3), (4)a, (4)b, (4)c: (3): strong for 6 s, 10 s are asked" in answer.stdout
+    )
+    assert "(4)a: 2 records, at least 3 are asked for" in answer.stdout
+    (found,) = json.loads((tmp_path / "out" / "summary.json").read_text())["suites"]
+    assert found["meets_eurocode_8"] is False
 
 
 def test_a_written_record_is_read_again_as_it_was(suite, tmp_path):

@@ -83,8 +83,8 @@ def rocked(tmp_path_factory):
 def test_the_answer(rocked):
     folder, text = rocked
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    assert list(summary)[:11] == ["title", "kind", "version", "status", "collapsed", "collapse_time", "ending",
-                                  "at_rest", "followed", "peaks", "joint_state"]  # fmt: skip
+    assert list(summary)[:12] == ["title", "kind", "version", "status", "collapsed", "collapse_time", "ending",
+                                  "at_rest", "followed", "contradictions", "peaks", "joint_state"]  # fmt: skip
     assert list(summary["peaks"]) == NAMES
     turn = read(folder).series.monitors["turn"]
     peak = summary["peaks"]["turn"]

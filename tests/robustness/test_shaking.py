@@ -120,6 +120,21 @@ def test_books_without_gravity():
     assert abs(summary["energy_closure"]) < 1e-12
 
 
+@pytest.mark.parametrize("kind", ["time-history", "fragility"])
+@pytest.mark.parametrize("stiffness", [{}, {"kn": "auto"}])
+def test_joints_of_automatic_stiffness_need_weights(kind, stiffness):
+    """Their stiffness goes by the weights, so that blocks of none blew up on joints of next to nothing."""
+    case = shaken(*column(), gravity=0.0, joints={"j": {"friction": 0.7, **stiffness}})
+    case["analysis"] = {"kind": kind} | ({"intensities": [1.0]} if kind == "fragility" else {})
+    with pytest.raises(CaseError) as refused:
+        engine.scene(case)
+    (problem,) = refused.value.problems
+    assert problem.path == ("gravity",)
+    assert f"0 is not allowed in kind = '{kind}' where joints.j.kn is 'auto'" in problem.message
+    case["analysis"] = {"kind": "gravity"}
+    engine.scene(case)
+
+
 def test_joints_too_stiff_for_rest_are_given_up_early():
     case = shaken(*column(), kn=1e15)
     case["analysis"]["max_steps"] = 200_000

@@ -92,7 +92,8 @@ def decay(times: np.ndarray, x: np.ndarray, frequency: float) -> tuple[float, fl
     return fitted.x[0], fitted.x[1] * frequency
 
 
-RAYLEIGH = {"ratio": 0.02, "frequency": 100.0}  # c = a0 m + a1 k with a0 = ζω and a1 = ζ/ω: ζ (ω₀/ω + ω/ω₀)/2
+# c = a0 m + a1 k with a0 = ζω and a1 = ζ/ω: ζ (ω₀/ω + ω/ω₀)/2
+RAYLEIGH = {"ratio": 0.02, "frequency": 100.0, "mass": True}
 LINEAR = {
     "stiffness": ({"stiffness": 5e-5}, lambda f: math.pi * f * 5e-5, "dashpots"),
     "mass": ({"mass": 10.0}, lambda f: 10.0 / (4.0 * math.pi * f), "mass"),

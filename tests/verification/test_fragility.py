@@ -12,6 +12,7 @@ from oracle.housner import Block, overturns
 from dem_cli import api
 from dem_cli.analyses.fragility import run
 from dem_cli.analyses.time_history import run as repeated
+from dem_cli.cli.words.fragility import fragility_rows
 from dem_cli.ensembles import shaken_run
 from dem_cli.ensembles.batch import Batch
 from dem_cli.errors import SolverError
@@ -21,7 +22,7 @@ BLOCK = Path(__file__).resolve().parents[2] / "cases" / "verification" / "rockin
 EXACT = Block(0.5, 2.0)
 FREQUENCY, LENGTH = 1.7, 5.0
 GRID = [4.2, 4.3, 4.45, 8.0, 12.6, 13.2]  # of pulses [m/s2]; 12.6 is in the gap where the block stands again
-SMALL = ["analysis.duration=3.0", "analysis.coda=1.0"]
+SMALL = ["analysis.duration=3.0", "analysis.coda=4.0"]
 
 
 class Kept(Observer):
@@ -75,6 +76,16 @@ def test_bisection_finds_the_exact_overturning_acceleration():
     assert summary["collapse_intensities"] == [pytest.approx(high, rel=0.01)]
     assert len(rows) == summary["runs"] <= 8
     assert any("lower collapse may be missed" in text for text in summary["warnings"])
+
+
+def test_two_levels_give_no_median_to_four_digits():
+    """Three structures stand at 4.2 m/s² and fall at 4.6 m/s²: half of them in between, and no more is known."""
+    summary, _ = study("analysis.intensities=[4.2, 4.6]", "analysis.repeats=2", *SMALL)
+    assert [summary[key] for key in ("median", "dispersion", "confidence", "curve")] == [None] * 4
+    assert summary["median_between"] == [4.2, 4.6]
+    rows = dict(fragility_rows(summary | {"kind": "fragility"}))
+    assert rows["median"] == "between 4.2 and 4.6: the levels do not resolve it"
+    assert any("lie in 1 interval between levels" in text for text in summary["warnings"])
 
 
 def test_intensity_is_peak_acceleration_over_the_unit():
@@ -144,5 +155,5 @@ def test_a_run_that_fails_is_told_and_left_out(monkeypatch):
 
 def test_a_study_whose_runs_all_fail_has_no_answer(monkeypatch):
     monkeypatch.setattr(shaken_run, "check_finite", failing(9))
-    with pytest.raises(SolverError, match="no run has a result; the first: the motion of block"):
+    with pytest.raises(SolverError, match="no record has a result; the first: the motion of block"):
         study("analysis.intensities=[4.2, 4.3]", *SMALL)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from dem_cli.output.ending import median_words
+
 Rows = list[tuple[str, str]]
 MOST_LISTED = 8  # levels, records or monitors that are listed
 
@@ -20,7 +22,9 @@ def _study(summary: Mapping[str, Any]) -> Rows:
     unit = summary["unit_acceleration"]
     rows = [("intensity", f"peak ground acceleration over {unit:g} m/s²")]
     median = summary.get("median")
-    if median is None:
+    if summary.get("median_between"):
+        rows.append(("median", f"{median_words(summary)}: the levels do not resolve it"))
+    elif median is None:
         rows.append(("collapse", "no median: " + _why_no_median(summary)))
     else:
         sure = summary.get("confidence")
@@ -46,12 +50,16 @@ def _study(summary: Mapping[str, Any]) -> Rows:
     rows += _non_monotone(summary["non_monotone"])
     before = f", {summary['runs_done_before']:,} of them before" if summary["runs_done_before"] else ""
     rows.append(("runs", f"{summary['runs']:,}{before}; {summary['seconds']:.3g} s of CPU"))
+    if summary.get("still_moving"):
+        rows.append(("not known", f"{summary['still_moving']} still moved in the end: neither standing nor fallen"))
     return rows
 
 
 def _why_no_median(summary: Mapping[str, Any]) -> str:
     if all(value is None for value in summary["collapse_intensities"]):
-        return "nothing collapsed; higher intensities are needed"
+        moving = summary.get("still_moving")
+        known = "nothing collapsed as far as is known; a longer analysis.coda or" if moving else "nothing collapsed;"
+        return f"{known} higher intensities are needed"
     if len(summary["collapse_intensities"]) == 1 and summary["stood_up_to"][0]:
         return "one record is one draw; more are needed"
     return "every record collapsed at the lowest intensity; lower ones are needed"

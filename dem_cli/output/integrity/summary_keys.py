@@ -332,6 +332,7 @@ class RunSummary(SummaryTable):
     energy_shares: dict[str, Number] | None = None
     peak_ground_acceleration: Maybe = None
     median: Maybe = None
+    median_between: Pair | None = None
     dispersion: Maybe = None
     confidence: FoundConfidence | None = None
     curve: FoundFragility | None = None
@@ -366,6 +367,7 @@ class RunSummary(SummaryTable):
     above_the_bound: FoundAbove | None = None
     unbalanced_force: Maybe = None
     warnings: list[str] | None = None
+    contradictions: list[str] | None = None
     skipped: list[str] | None = None
 
 

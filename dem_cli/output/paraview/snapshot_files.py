@@ -68,7 +68,7 @@ class ParaViewFiles:
     def __init__(
         self,
         model: Model,
-        joints: FollowedJoints | None,
+        joints: JointPlaces | None,
         opened: Callable[[str], h5py.File],
         links: LinkPlaces | None = None,
     ):
@@ -78,8 +78,8 @@ class ParaViewFiles:
         self.points = PointSeries(opened(CONTACTS), declared(CONTACT_FIELDS | STEP_FIELDS, d))
         self.joints: GridSeries | None = None
         if joints is not None:
-            cells, said = outlines_of_joints(joints.places), declared(JOINT_FIELDS | STEP_FIELDS, d)
-            self.joints = GridSeries(opened(JOINTS), cells, joint_places(joints.places), said)
+            cells, said = outlines_of_joints(joints), declared(JOINT_FIELDS | STEP_FIELDS, d)
+            self.joints = GridSeries(opened(JOINTS), cells, joint_places(joints), said)
         self.links: GridSeries | None = None
         if links is not None:
             numbers = {"link": np.arange(len(links.starts) - 1, dtype=np.int32)}

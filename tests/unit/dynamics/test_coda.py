@@ -9,8 +9,10 @@ from engine import block, rectangle, tables
 from oracle.base_motion import Sine
 from oracle.housner import Block, rock
 
+from dem_cli.cli.words.fragility import fragility_rows
 from dem_cli.dynamics.coda import Swings, undecided
 from dem_cli.engine.settings import DEFAULT
+from dem_cli.errors import SolverError
 from dem_cli.output.ending import ending_words, last_words
 from dem_cli.output.record import MOVES, ROCKS, STOOD
 
@@ -93,13 +95,22 @@ def test_repeats_and_fragility_end_as_the_run_beside_them():
     assert found["repeats"]["still_moving"] == 0
     cut = engine.solve(shaken(6.0, repeats=2, coda=0.0))[0]
     assert (cut["repeats"]["collapsed"], cut["repeats"]["still_moving"]) == (0, 2)
-    assert "2 of 2 runs still moved 0 s after the motion and count as standing" in " ".join(cut["warnings"])
+    assert cut["repeats"]["share_collapsed"] is None
+    assert cut["repeats"]["peaks"] == [None]
+    assert "2 of 2 runs still moved 0 s after the motion and are left out, neither standing" in " ".join(
+        cut["warnings"]
+    )
     fragile = shaken(8.0) | {"analysis": {"kind": "fragility", "intensities": [2.0, 8.0]}}
     assert engine.solve(fragile)[0]["share"] == [0.0, 1.0]
     fragile["analysis"] |= {"coda": 0.0}
+    with pytest.raises(SolverError, match=r"still moving 0 s after the motion; a longer analysis\.coda may tell"):
+        engine.solve(fragile)
+    fragile["analysis"] |= {"intensities": [0.01, 8.0]}  # the weaker one moves nothing
     cut = engine.solve(fragile)[0]
-    assert cut["share"] == [0.0, 0.0]
-    assert any("2 of 2 runs still moved 0 s after the motion" in text for text in cut["warnings"])
+    assert (cut["share"], cut["stood_up_to"], cut["collapse_intensities"]) == ([0.0, None], [0.01], [None])
+    assert cut["still_moving"] == 1
+    assert any("1 of 2 runs still moved 0 s after the motion" in text for text in cut["warnings"])
+    assert "nothing collapsed as far as is known" in str(fragility_rows(cut | {"kind": "fragility"}))
 
 
 class Places:
@@ -143,6 +154,8 @@ def test_words():
         ending_words({"collapsed": None, "ending": MOVES}) == "still moving at the end: whether it falls is not known"
     )
     assert ending_words({"collapsed": False}) == "stood"  # of earlier versions
+    said = {"collapsed": False, "ending": STOOD, "contradictions": ["on softer joints it collapses"]}
+    assert ending_words(said) == "stood; on softer joints it collapses"
     assert ending_words({"collapsed": None}) == ending_words({}) == ""
     assert last_words({"at_rest": False}) == "at the end, still moving"
     assert last_words({}) == "in the end"

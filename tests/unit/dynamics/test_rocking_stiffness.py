@@ -9,14 +9,19 @@ import engine
 import numpy as np
 import pytest
 from engine import block, rectangle, scene, tables
+from oracle.base_motion import Sine
+from oracle.newmark_slider import Slope, slide
 
 from dem_cli.analyses.estimate import describe
+from dem_cli.analyses.stiffness_check import change, trifles
 from dem_cli.analyses.time_history import alone
+from dem_cli.case.schema import Monitor
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness, turn_sideways
 from dem_cli.engine.properties import joint_properties
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.model.scales import smallest_edge
+from dem_cli.output.ending import ending_words
 
 KN, DENSITY, G = 1e9, 2000.0, 9.81
 GROUND = block("ground", rectangle(-30.0, -1.0, 30.0, 0.0), fixed=True)
@@ -174,6 +179,42 @@ def test_a_run_on_joints_that_had_to_stay_soft_says_what_that_changed():
     assert f"on joints 10 times as soft peaks move, rotation of 'd0-0' by {moved:.1%}" in found["warnings"][0]
     falls = run("auto", *drums(1, 0.5, 3.5), settings=soft, **PULSE, **SHORT)
     assert "on joints 10 times as soft it collapses as well" in falls["warnings"][0]
+
+
+def test_a_run_that_falls_on_softer_joints_says_so_beside_its_result():
+    """Just below the pulse that overturns it on joints that had to stay soft."""
+    soft = replace(DEFAULT, rocking=replace(ROCKING, work=1.0))
+    motion = {"motion": PULSE["motion"] | {"amplitude": 1.95}}
+    found = run("auto", *drums(1, 0.5, 3.5), settings=soft, **motion, **SHORT)
+    assert found["collapsed"] is False
+    assert ending_words(found).endswith("; on softer joints it collapses")
+    assert any("on joints 10 times as soft the structure collapses" in text for text in found["warnings"])
+
+
+@pytest.mark.parametrize(("amplitude", "friction"), [(4.0, 0.2), (9.0, 0.2), (3.0, 0.1)])
+def test_a_block_that_slides_does_not_hang_on_its_stiffness(amplitude, friction):
+    """Its largest slip is Newmark's. Bounce and turn are ten times as large on softer joints, and nothing."""
+    motion = {"kind": "pulse", "shape": "sine", "amplitude": amplitude, "frequency": 1.0}
+    follow = [("displacement", "x"), ("displacement", "y"), ("velocity", "x"), ("velocity", "y"), ("rotation", None)]
+    watched = [{"block": "d0-0", "quantity": q} | ({"component": c} if c else {}) for q, c in follow]
+    case = tables(GROUND, *drums(1, 0.5, 0.2), density=DENSITY, joints={"dry": {"friction": friction}}, monitor=watched,
+                  motion=motion, analysis={"kind": "time-history", "duration": 2.0})  # fmt: skip
+    found, records = engine.solve(case)
+    exact = np.abs(slide(Slope(friction), Sine(amplitude, 1.0, 0.0, 1.0), 2.0).slips).max()
+    assert np.abs(records.history.monitors[:, 0]).max() == pytest.approx(exact, rel=2e-3)
+    assert found["softer_joints_move"] < ROCKING.moved
+    assert not any("as soft" in text for text in found["warnings"])
+
+
+def test_peaks_that_matter_are_compared():
+    """Of one that is a thousandth of another of its kind, and of a thousandth of the block, nothing is said."""
+    monitors = [Monitor(block="b", quantity=q, component="x") for q in ("displacement", "displacement", "velocity")]
+    peaks = np.array([2.0, 1.9e-3, 3.0])
+    least = trifles(monitors, peaks, 0.5, 9.81, DEFAULT)
+    assert least == pytest.approx([2e-3, 2e-3, 3e-3])
+    assert trifles(monitors, 1e-9 * peaks, 0.5, 9.81, DEFAULT) == pytest.approx([5e-4, 5e-4, 1e-3 * np.sqrt(4.905)])
+    assert change(peaks, np.array([2.2, 1.0e-3, 3.0]), least) == pytest.approx([1.0 / 11.0, 0.0, 0.0])
+    assert change(peaks, np.array([2.0, 4e-3, 3.0]), least) == pytest.approx([0.0, 2.1 / 4.0, 0.0])
 
 
 def repeated(**changes) -> tuple[dict, list]:

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from dem_cli.ensembles.batch import ShakingTrial
-from dem_cli.ensembles.capacities import bounds_of, outcomes, split, survived_above
+from dem_cli.ensembles.capacities import between, bounds_of, outcomes, split, survived_above
 from dem_cli.ensembles.record_search import bisection, runs_per_record
 from dem_cli.ensembles.shaken_run import ShakenRunResult
 from dem_cli.errors import CaseError
+from dem_cli.output.ending import median_words
 from dem_cli.output.record import distinct
 from dem_cli.tables.analysis import FragilityAnalysis
 
@@ -37,6 +38,22 @@ def test_failed_runs_are_left_out():
         ShakingTrial(1, 1, 1.0): run_of(False),
     }
     assert outcomes(done, 0, 1) == {2.0: True}
+
+
+def test_half_of_the_capacities_lie_between_the_middle_bounds():
+    low, high, never = [1.0, 2.0], [2.0, 3.0], [3.0, math.inf]
+    assert between(np.array([[low], [low], [low]])) == (1.0, 2.0)
+    assert between(np.array([[low], [high]])) == (1.0, 3.0)
+    assert between(np.array([[low], [high], [high]])) == (2.0, 3.0)
+    assert between(np.array([[low, never], [never, never]])) == (3.0, math.inf)
+
+
+def test_words_of_a_median_that_levels_do_not_resolve():
+    assert median_words({"median": 1.23456}) == "1.235"
+    assert median_words({"median": None, "median_between": [0.4, 0.7]}) == "between 0.4 and 0.7"
+    assert median_words({"median": None, "median_between": [0.4, None]}) == "above 0.4"
+    assert median_words({"median": None, "median_between": [0.0, 0.4]}) == "below 0.4"
+    assert median_words({"median": None, "median_between": None}) == ""
 
 
 def test_dispersion_is_split_as_the_numbers_were_made():

@@ -120,6 +120,19 @@ def test_a_relative_case_in_the_current_folder(folder, monkeypatch):
     assert Path(load_case("case.toml").case.motion[0].file) == folder / "records" / "east.csv"
 
 
+@pytest.mark.parametrize(
+    ("samples", "order", "said"),
+    [
+        ("0,0.1\n1,0.2\n2,0.1\n", "2", "2 is not allowed for east.csv: a baseline of order 2 needs at least 4 samples"),
+        ("0,0.1\n1,0.2\n2,0.3\n3,0.4\n", "true", "takes out the whole motion of east.csv"),
+    ],
+)
+def test_a_baseline_that_cannot_be_taken_out_is_refused(folder, samples, order, said):
+    (folder / "records" / "east.csv").write_text(samples)
+    with pytest.raises(CaseError, match=f"motion.0.baseline: {said}"):
+        motions_of(loaded(folder, RECORD + f"peak = 2.0\nbaseline = {order}").case)
+
+
 def test_a_suite_and_the_record_of_it_that_is_used(folder):
     text = '[motion]\nkind = "artificial"\nspectrum = "EC8-1"\nsoil = "B"\nag = 2.0\ncount = 3\nnumber = 2\nscale = 0.5'
     case = loaded(folder, text).case

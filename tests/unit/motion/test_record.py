@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dem_cli.motion.record import record
+from dem_cli.motion.record_text import RecordError
 
 steps = st.lists(st.floats(1e-3, 1.0), min_size=1, max_size=30)
 
@@ -89,6 +90,52 @@ def test_a_correction_makes_the_velocity_smaller_and_leaves_the_start_at_rest():
     assert np.sqrt((corrected.velocity(times) ** 2).mean()) < 0.5 * np.sqrt((plain.velocity(times) ** 2).mean())
     taken = plain.acceleration(times) - corrected.acceleration(times)
     assert np.diff(taken, 2) == pytest.approx(0.0, abs=1e-12)  # a straight line
+
+
+def awkward(kind: str) -> tuple[np.ndarray, np.ndarray, str]:
+    """Times, values and quantity of a record that a correction may make worse."""
+    rng = np.random.default_rng(5)
+    times = np.linspace(0.0, 10.0, 501)
+    strong = np.sin(5.0 * times) * np.exp(-((times - 3.0) ** 2))
+    return {
+        "short": (times[:5], np.array([0.0, 1.0, 2.0, 1.0, 0.0]), "acceleration"),
+        "offset": (times, strong + 0.3, "acceleration"),
+        "drift": (times, strong + 0.05 * times - 0.1, "acceleration"),
+        "one side": (times, np.where(times < 1.0, np.sin(np.pi * times), 0.0), "acceleration"),
+        "there and back": (times, np.where(times < 2.0, np.sin(np.pi * times), 0.0), "acceleration"),
+        "noise": (times, rng.normal(size=501), "acceleration"),
+        "at rest in the end": (times, np.where(times < 4.0, np.sin(0.25 * np.pi * times), 0.0), "velocity"),
+        "a place": (times, 0.1 * np.where(times < 4.0, 1.0 - np.cos(0.5 * np.pi * times), 0.0), "displacement"),
+        "uneven": (times**1.5, strong + 0.1, "acceleration"),
+    }[kind]
+
+
+@pytest.mark.parametrize("order", [0, 1, 2, 3])
+@pytest.mark.parametrize(
+    "kind",
+    ["short", "offset", "drift", "one side", "there and back", "noise", "at rest in the end", "a place", "uneven"],
+)
+def test_a_correction_leaves_the_base_no_faster_in_the_end(kind, order):
+    times, values, quantity = awkward(kind)
+    plain, corrected = record(times, values, quantity), record(times, values, quantity, baseline=order)
+    before, after = (abs(float(one.velocity(one.times)[-1])) for one in (plain, corrected))
+    fastest = np.abs(plain.velocity(plain.times)).max()
+    assert after <= before + 1e-12 * fastest
+    assert np.abs(corrected.velocity(corrected.times)).max() <= 2.0 * fastest  # and does not run away before
+    taken = plain.acceleration(plain.times) - corrected.acceleration(plain.times)
+    fitted = np.polynomial.Polynomial.fit(plain.times, taken, order)
+    assert fitted(plain.times) == pytest.approx(taken, abs=1e-9)  # a polynomial of this order, and nothing else
+
+
+@pytest.mark.parametrize("order", [0, 1, 2, 3])
+def test_a_baseline_needs_samples(order):
+    times = np.arange(order + 2.0)
+    record(times, times**2, baseline=order)
+    if order:
+        with pytest.raises(
+            RecordError, match=f"order {order} needs at least {order + 2} samples; there are {order + 1}"
+        ):
+            record(times[:-1], times[:-1] ** 2, baseline=order)
 
 
 def test_a_correction_of_a_velocity_record():
