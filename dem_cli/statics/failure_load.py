@@ -32,7 +32,7 @@ from dem_cli.statics.equilibrium import Ahead, Verdict, check_finite, relax, set
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, LoadPass, SearchRange
 from dem_cli.statics.mechanism import follows
 from dem_cli.statics.trial_loads import TrialLoads
-from dem_cli.statics.warm_start import CURVE, GRAVITY, LIMIT, PATH, start_by_history, start_by_path
+from dem_cli.statics.warm_start import CURVE, GRAVITY, LIMIT, PATH, start_by_path, starts_by_history
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -185,10 +185,14 @@ class LoadSearch:
         if not plane or limits.largest < self.sim.settings.implicit_history.blocks or limits.too_large:
             return False
         report = dict(answer.start)
-        start = start_by_history(limits, report)
-        if start is None or not self._holds(start, settings.below * self.resolution):
+        starts, rows, onset = starts_by_history(limits, report), len(self.track.kept), answer.onset
+        for start in starts[:-1]:
+            self._pass_by(start)
+        if not starts or not self._holds(starts[-1], settings.below * self.resolution):
+            answer.onset = onset
+            del self.track.kept[rows:]
             return False
-        answer.start, self.plateau = report, start.load / scale
+        answer.start, self.plateau = report, starts[-1].load / scale
         self._raise_load(self._trials([], settings.one_step * self.resolution * answer.carried / scale))
         return True
 
@@ -449,10 +453,22 @@ class LoadSearch:
         sim, answer = self.sim, self.answer
         answer.low, answer.held = load * sim.live_scale, sim.save()
         answer.peak_displacement = measures.largest_displacement(sim)
-        elastic = sim.settings.proof.not_elastic * answer.elastic * load
-        if answer.onset is None and answer.peak_displacement > answer.settled + elastic:
-            answer.onset = answer.low
+        self._see_onset(load)
         self.track.keep("loading")
+
+    def _pass_by(self, start: WarmStart) -> None:
+        """The row of an equilibrium that a history went through, which the explicit solver need not hold."""
+        start.put_into(self.sim)
+        self.sim.advance(1, slot.HOLD_LOAD)
+        self._see_onset(start.load / self.sim.live_scale)
+        self.track.keep("loading")
+
+    def _see_onset(self, load: float) -> None:
+        """Notes the first equilibrium in which blocks had moved by more than joints deform."""
+        sim, answer = self.sim, self.answer
+        elastic = sim.settings.proof.not_elastic * answer.elastic * load
+        if answer.onset is None and measures.largest_displacement(sim) > answer.settled + elastic:
+            answer.onset = load * sim.live_scale
 
 
 class _Looks:

@@ -43,17 +43,28 @@ class Level(NamedTuple):
 
 
 class HeldState(NamedTuple):
-    """The highest load that an implicit history held, and the lowest that failed, with the state at the first."""
+    """An equilibrium on the way."""
 
-    low: float  # multipliers, as users know them
-    high: float
+    load: float  # multiplier, as users know it
     normal: np.ndarray  # [N], (n_points,)
     shear: np.ndarray  # [N], (n_points, d − 1)
     gaps: np.ndarray  # [m], (n_points,)
     displacements: np.ndarray  # of the free degrees of freedom since before gravity [m, rad], (n_free,)
-    work: float  # of the live loads on the way [J]
-    levels: list[Level]
+    work: float  # of the live loads until then [J]
+
+
+class FoundHistory(NamedTuple):
+    """An implicit history from gravity to the lowest load that failed."""
+
+    high: float  # that load, a multiplier as users know it
+    held: list[HeldState]  # equilibria, upwards
+    levels: list[Level]  # in the order in which they were tried
     curve: list[Resisted]
+
+    @property
+    def low(self) -> float:
+        """The highest load that held."""
+        return self.held[-1].load
 
     def summary(self) -> dict[str, Any]:
         """What summary.json says of it."""
@@ -81,6 +92,7 @@ class ImplicitHistory:
     high: float | None = None
     state: State | None = None  # None: no equilibrium under dead loads was found
     work: float = 0.0  # of the live loads until then [J]
+    held: list[HeldState] = field(default_factory=list)
     levels: list[Level] = field(default_factory=list)
     curve: list[Resisted] = field(default_factory=list)
 
@@ -88,17 +100,11 @@ class ImplicitHistory:
         self._reached = 0.0  # displacement at `low`
         self._origin = self._elastic = self._first_step = 0.0
 
-    def search(self, bound: float, resolution: float) -> HeldState | None:
+    def search(self, bound: float, resolution: float) -> FoundHistory | None:
         """The load that fails, below a bound, to a relative width; None where it was not found."""
-        if not (self._stand() and self._close_in(bound, resolution)):
+        if not (self._stand() and self._close_in(bound, resolution)) or self.high is None or not self.held:
             return None
-        problem, state = self.problem, self.state
-        assert state is not None
-        assert self.high is not None
-        moved = problem.displacements(state.displacements)
-        return HeldState(
-            self.low, self.high, *problem.forces_and_gaps(state), moved, self.work, self.levels, self.curve
-        )
+        return FoundHistory(self.high, self.held, self.levels, self.curve)
 
     def _close_in(self, bound: float, resolution: float) -> bool:
         """Load after load, until the bracket is as narrow; False where one of them stays undecided."""
@@ -216,4 +222,6 @@ class ImplicitHistory:
         weight = self.problem.weight * self.problem.unit
         self.work += load / self.problem.live_scale * (reached - self._reached) * self._elastic * weight
         self.low, self.state, self._reached = load, state, reached
+        moved = self.problem.displacements(state.displacements)
+        self.held.append(HeldState(load, *self.problem.forces_and_gaps(state), moved, self.work))
         self.curve += past

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from dem_cli.limit.associated import LimitLoad
     from dem_cli.limit.matrices import Structure
     from dem_cli.limit.path import Path
-    from dem_cli.statics.implicit_history import HeldState
+    from dem_cli.statics.implicit_history import FoundHistory
 
 
 class RigidLimits:
@@ -142,7 +142,7 @@ class RigidLimits:
         )  # fmt: skip
 
     @cached_property
-    def history(self) -> HeldState | None:
+    def history(self) -> FoundHistory | None:
         """The implicit history under load from gravity to failure; None where it does not apply, or was not found."""
         if self._matrices is None or self.sim.links or self.bound is None:
             return None
@@ -152,7 +152,7 @@ class RigidLimits:
         return found
 
     @stage
-    def _followed(self, structure: Structure, friction: np.ndarray) -> HeldState | None:
+    def _followed(self, structure: Structure, friction: np.ndarray) -> FoundHistory | None:
         from dem_cli.limit.elastic import Elastic
         from dem_cli.statics.implicit_history import ImplicitHistory
 

@@ -107,16 +107,21 @@ def start_by_path(limits: RigidLimits, report: dict[str, Any]) -> WarmStart | No
     return WarmStart(PATH, path.load, normal, shear, gaps, displacements, work, path.flat(warm_start.at_the_end))
 
 
-def start_by_history(limits: RigidLimits, report: dict[str, Any]) -> WarmStart | None:
-    """The state at the highest load that an implicit history from gravity held; None where there is none."""
-    held = limits.history
-    if held is None or held.low <= 0.0:
-        return None
-    report |= {"kind": IMPLICIT, **held.summary(), "seconds": limits.seconds["history"]}
-    normal, shear = limits.on_points(held.normal), limits.on_points(held.shear)
-    displacements = limits.on_blocks(held.displacements)
-    gaps = limits.on_points(held.gaps, limits.gaps)
-    return WarmStart(IMPLICIT, held.low, normal, shear, gaps, displacements, held.work, plateau=True)
+def starts_by_history(limits: RigidLimits, report: dict[str, Any]) -> list[WarmStart]:
+    """The equilibria of an implicit history from gravity, upwards; none where it did not come to failure.
+
+    What is said of it goes to `report`.
+    """
+    found = limits.history
+    if found is None:
+        return []
+    report |= {"kind": IMPLICIT, **found.summary(), "seconds": limits.seconds["history"]}
+    starts = []
+    for held in found.held:
+        normal, shear = limits.on_points(held.normal), limits.on_points(held.shear)
+        gaps, displacements = limits.on_points(held.gaps, limits.gaps), limits.on_blocks(held.displacements)
+        starts.append(WarmStart(IMPLICIT, held.load, normal, shear, gaps, displacements, held.work, plateau=True))
+    return starts
 
 
 def _by_limit_analysis(job: Job, limits: RigidLimits, report: dict[str, Any]) -> WarmStart | None:

@@ -79,8 +79,8 @@ def test_work_is_that_of_the_loads_on_the_way():
     held = history.search(0.5, RESOLUTION)
     loads = [level.load for level in held.levels if level.verdict == HOLDS]
     assert held.low == pytest.approx(0.4, rel=RESOLUTION)
-    compliance = held.work / sum(load * (load - before) for before, load in zip([0.0, *loads], loads))
-    displacement = np.abs(held.displacements[0])
+    compliance = held.held[-1].work / sum(load * (load - before) for before, load in zip([0.0, *loads], loads))
+    displacement = np.abs(held.held[-1].displacements[0])
     weight = 2000.0 * 9.81 * 0.2
     assert compliance == pytest.approx(weight * displacement / held.low, rel=0.05)
 
