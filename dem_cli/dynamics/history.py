@@ -17,6 +17,7 @@ from dem_cli.dynamics.damping import damping_of
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.initial_state import set_initial
 from dem_cli.dynamics.snapshots import Snapshots
+from dem_cli.dynamics.supports import carriers_of
 from dem_cli.dynamics.time_step import TimeStep, time_step
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
@@ -105,6 +106,7 @@ class TimeHistory:
                 self.track.frame("gravity")
                 return False
         sim.begin(self.step.step)
+        sim.take_carriers(carriers_of(sim))
         if case.initial:
             set_initial(case, sim)
         if case.initial or not case.analysis.settle:

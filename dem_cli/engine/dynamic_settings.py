@@ -47,6 +47,9 @@ class HistorySettings:
     loose_step: float = 1e-4  # s: the time step where no joint limits it, at most
     loose_share: float = 1e-3  # of the duration: the same
     noticeable: float = 1e-3  # of the smallest edge: energy that lifts the whole structure by it, ways that are none
+    carries: float = 1e-3  # of its weight: what pushes a block up with less does not carry it
+    sinks: float = 0.03  # of its least width, that a block sinks below what carried it to have lost that support ...
+    touches: float = 0.01  # ... where it is farther from these faces than so much of the smallest edge, or beside them
     still: float = 0.01  # unbalanced force, in weights of a block, below which it has come to rest ...
     quiet: float = 1e-3  # ... with so much of the noticeable energy at most
     steady: float = 0.01  # of the smallest edge: what blocks may go beyond earlier places and have turned back

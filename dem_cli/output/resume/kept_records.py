@@ -27,7 +27,7 @@ _PLACES = {
     "engine.measures": ("EnergySums",),
     "engine.placement.clearances": ("Play",),
     "engine.settings": ("DetectionSettings",),
-    "engine.state": ("Books", "SavedState"),
+    "engine.state": ("Books", "Carriers", "SavedState"),
     "engine.tracking": ("JointTracking",),
     "kernels.fixed_joints": ("FixedJoints",),
     "kernels.records": (
