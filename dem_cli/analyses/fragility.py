@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.dynamics.bending_stiffness import bending_doubts
-from dem_cli.dynamics.coda import undecided
+from dem_cli.dynamics.coda import longest_coda, undecided
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import duration_of
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
@@ -56,6 +56,7 @@ class FragilityStudy:
         self.motions = [motion for record in self.records for motion in record.components]
         duration_of(case, GroundMotion(self.motions, model))  # which must be known
         self.stiffness = rocking_stiffness(case, model, settings)
+        self.coda = longest_coda(case, model)
         self.settings = self.stiffness.applied(settings)
         self.warnings = [self.stiffness.doubt] if self.stiffness.turn > settings.rocking.doubtful else []
         self.warnings += bending_doubts(case, model, settings)
@@ -161,7 +162,7 @@ class FragilityStudy:
             self.warnings.append(f"{self.names[trial.record]} at {trial.intensity:g}: {run.how}")
         if failed:
             self.warnings.append(f"{len(failed)} of {len(done)} runs failed and are left out")
-        self.warnings += undecided(sum(run.ending == MOVES for run in done.values()), len(done), self.analysis.coda)
+        self.warnings += undecided(sum(run.ending == MOVES for run in done.values()), len(done), self.coda)
 
     def _warn_about(self, answer: dict[str, Any], intervals: int) -> None:
         """What a reader of the curve must know; intervals: different bounds of capacities."""

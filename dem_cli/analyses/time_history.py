@@ -17,7 +17,7 @@ import numpy as np
 
 from dem_cli.analyses.stiffness_check import checked
 from dem_cli.dynamics.bending_stiffness import bending_doubts
-from dem_cli.dynamics.coda import undecided
+from dem_cli.dynamics.coda import longest_coda, undecided
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
@@ -99,7 +99,7 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
     if fell:
         warnings.append(f"{fell} of {case.analysis.repeats} perturbed structures do not stand: left out")
     found = spread([run for run in runs if run.ending], len(case.monitor))
-    warnings += undecided(found["still_moving"], found["runs"], case.analysis.coda)
+    warnings += undecided(found["still_moving"], found["runs"], longest_coda(case, model))
     return {
         "repeats": found | {"seconds": sum(run.seconds for run in runs)},
         "repeat_seconds": time.perf_counter() - started,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.dynamics.coda import Ending, ending
+from dem_cli.dynamics.coda import Ending, ending, longest_coda
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen_blocks
 from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
 from dem_cli.dynamics.damping import damping_of
@@ -187,18 +187,18 @@ class TimeHistory:
     def _followed(self, sim: DynamicSimulation) -> Ending:
         """How a copy ends after the motion: what was measured and drawn is of the motion alone."""
         analysis, dt, motion_ends = self.case.analysis, self.step.step, sim.time
-        history = sim.settings.history
+        history, longest = sim.settings.history, longest_coda(self.case, sim.model)
         nothing = no_watch(sim)
 
         def advance(n_steps: int) -> None:
             sim.shake(self.ground.stretch(sim.time, n_steps, dt), n_steps, nothing)
             since = sim.time - motion_ends
             moved = measures.largest_displacement(sim)
-            self.track.observer.progress("coda", 0.0, moved, min(since / analysis.coda, 1.0))
+            self.track.observer.progress("coda", 0.0, moved, min(since / max(longest, dt), 1.0))
 
-        stretch = max(1, math.ceil(min(analysis.coda / history.rows, history.longest_look) / dt))
+        stretch = max(1, math.ceil(min(max(longest, history.one_more) / history.rows, history.longest_look) / dt))
         try:
-            return ending(sim, analysis, self.step, stretch, advance)
+            return ending(sim, analysis, longest, self.step, stretch, advance)
         except SolverError as error:
             self.job.warnings.append(f"how it ends is not known; after the motion: {error}")
             return Ending(MOVES, None, sim.time - motion_ends)

@@ -51,7 +51,7 @@ def lost_supports(sim: DynamicSimulation, least: np.ndarray) -> np.ndarray:
     """How far free blocks sank that have lost their support [m], (n_free,); 0 of all others.
 
     least: how far a block sinks at least [m], (n_free,). One has lost its support that sank so far below what carried
-    it and does not touch these faces any more, or stood above them and now has its centre beside them.
+    it and does not touch these faces any more, or stood above them and now leans on others, its centre beside them.
     """
     carriers, found = sim.carriers, np.zeros(len(sim.free))
     if not len(carriers.blocks):
@@ -65,8 +65,10 @@ def lost_supports(sim: DynamicSimulation, least: np.ndarray) -> np.ndarray:
     for k in np.flatnonzero((lowered[sim.free] > least) & np.isfinite(lowered[sim.free])):
         block = int(sim.free[k])
         faces = carriers.faces[carriers.blocks == block]
-        beside = block in carriers.above and not _above(sim, block, faces)
-        if beside or not _touches(sim, block, faces):
+        touched = _touched(sim, block)
+        here = np.isin(touched, faces)
+        beside = block in carriers.above and not here.all() and not _above(sim, block, faces)
+        if beside or not here.any():
             found[k] = lowered[block]
     return found
 
@@ -76,15 +78,12 @@ def _block_of(sim: DynamicSimulation, faces: np.ndarray) -> np.ndarray:
     return model.part_blocks[model.topology.face_parts[faces]]
 
 
-def _touches(sim: DynamicSimulation, block: int, faces: np.ndarray) -> bool:
-    """Whether a block is next to any of these faces now."""
-    blocks, meeting = sim.joints.blocks, sim.geometry.faces
-    ours = ((blocks[:, 0] == block) & np.isin(meeting[:, 1], faces)) | (
-        (blocks[:, 1] == block) & np.isin(meeting[:, 0], faces)
-    )
-    points = ours[sim.joints.owners] & (sim.joints.kn > 0.0)
+def _touched(sim: DynamicSimulation, block: int) -> np.ndarray:
+    """Faces of others that a block is next to now, (n,)."""
+    ours, meeting, joints = sim.joints.blocks == block, sim.geometry.faces, sim.joints
     near = sim.settings.history.touches * sim.smallest
-    return bool((sim.contacts.gaps[points] <= near).any())
+    met = np.unique(joints.owners[(joints.kn > 0.0) & (sim.contacts.gaps <= near)])
+    return np.concatenate([meeting[met, 1 - side][ours[met, side]] for side in (0, 1)])
 
 
 def _above(sim: DynamicSimulation, block: int, faces: np.ndarray) -> bool:

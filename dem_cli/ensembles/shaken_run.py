@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.dynamics.coda import Ending, ending
+from dem_cli.dynamics.coda import Ending, ending, longest_coda
 from dem_cli.dynamics.collapse_criterion import check_energy, check_finite, fallen
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
@@ -151,7 +151,7 @@ class RestedStructure:
             found = fallen(sim, analysis)
             if found is not None:
                 return Ending(COLLAPSED, found)
-        return ending(sim, analysis, self.step, self.stretch, advance)
+        return ending(sim, analysis, longest_coda(self.case, sim.model), self.step, self.stretch, advance)
 
     def _stretch(self, sim: DynamicSimulation, ground: GroundMotion, n_steps: int, peaks: LargestValues | None) -> None:
         """n_steps of motion, with the peaks of the monitors where they are wanted."""
