@@ -213,7 +213,8 @@ class ShakingAnalysis(CaseModel):
     dropped: float | None = Field(
         default=None,
         gt=0.0,
-        description="a block that sank by so much has collapsed [m]; default: its least width",
+        description="a block that sank by so much has collapsed [m]; default: its least width, or 3 % of it where it "
+        "lost its support",
         examples=[0.3],
     )
     max_steps: int = Field(default=200_000_000, ge=1000, description="give up rather than take so many steps")
