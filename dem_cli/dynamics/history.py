@@ -14,6 +14,7 @@ from dem_cli.dynamics.coda import Ending, ending, longest_coda
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen_blocks
 from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
 from dem_cli.dynamics.damping import damping_of
+from dem_cli.dynamics.extremes import Extremes, Stretch, shaken_on
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.initial_state import set_initial
 from dem_cli.dynamics.snapshots import Snapshots
@@ -21,7 +22,7 @@ from dem_cli.dynamics.supports import carriers_of
 from dem_cli.dynamics.time_step import TimeStep, time_step
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
-from dem_cli.engine.dynamic import DynamicSimulation, no_watch
+from dem_cli.engine.dynamic import DynamicSimulation
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.measures import closure
@@ -65,7 +66,8 @@ class TimeHistory:
         self.sim, self.step = self._simulation()
         self.track: Track = job.track(self.sim)
         self.snapshots = Snapshots(self.track, self.sim, ground, job.case.gravity, job.case.output.frames)
-        self.overlap, self.peaks = 0.0, np.zeros(len(job.case.monitor))  # of all monitors, before a collapse is seen
+        self.extremes = Extremes(len(job.case.monitor))  # before a collapse is seen
+        self.overlap = 0.0  # largest of all that was followed [m]
         self.closed: float | None = None  # error of the energy book when a collapse was seen
         self.farthest = 0.0  # that a block went against the ground [m], look by look
 
@@ -84,6 +86,11 @@ class TimeHistory:
         if any(law.rates for law in laws_of(self.case)):
             sim = self.job.clock.compiled(lambda: make(found.step))
         return sim, found
+
+    @property
+    def peaks(self) -> np.ndarray:
+        """Largest absolute value of each monitor in all that was followed, before a collapse is seen, (n_monitors,)."""
+        return self.extremes.values
 
     @property
     def still(self) -> bool:
@@ -140,7 +147,7 @@ class TimeHistory:
     def _through_motion(self, total: int) -> CollapsedBlock | None:
         """Stretches of the motion, of so many steps in all; returns the block that fell first."""
         history, sim, dt = self.job.settings.history, self.sim, self.step.step
-        every = max(1, round(1.0 / (self.case.output.rate * dt)))
+        every = self._every()
         stretch = max(1, math.ceil(min(total / history.rows, history.longest_look / dt)))
         motion = _Shaking(self.duration)
         if not sim.stages.resumed(motion):
@@ -149,7 +156,7 @@ class TimeHistory:
             sim.stages.offer(motion)
             n = min(stretch, total - motion.done, max(1, math.ceil((motion.end - sim.time) / dt - 0.5)))
             try:
-                values = self._stretch(n, every)
+                seen = self._stretch(n, every)
                 self._look()
             except SolverError as error:
                 if motion.fallen is None:
@@ -157,7 +164,7 @@ class TimeHistory:
                 self.job.warnings.append(f"the collapse is known, not what follows: {error}")
                 break
             if motion.fallen is None:
-                self._look_for_falls(motion, values)
+                self._look_for_falls(motion, seen)
             motion.done += n
             self.snapshots.look()
             moved = measures.largest_displacement(sim)
@@ -165,9 +172,9 @@ class TimeHistory:
             self.track.observer.progress("shaking", sim.load, moved, min(sim.time / motion.end, 1.0))
         return motion.fallen
 
-    def _look_for_falls(self, motion: _Shaking, values: np.ndarray) -> None:
-        """Peaks of the monitors, whose values are those of the last stretch, and whether a block has fallen since."""
-        np.maximum(self.peaks, np.abs(values).max(axis=0, initial=0.0), out=self.peaks)
+    def _look_for_falls(self, motion: _Shaking, seen: Stretch) -> None:
+        """Peaks of the monitors, with those of the last stretch, and whether a block has fallen since."""
+        self.extremes.see(seen)
         motion.fallen = fallen_block(self.sim, self.case.analysis)
         if motion.fallen is not None:
             self.closed = closure(self.sim)
@@ -185,16 +192,17 @@ class TimeHistory:
         return found | {"ending": end.how, "at_rest": end.still, "followed": end.followed}
 
     def _followed(self, sim: DynamicSimulation) -> Ending:
-        """How a copy ends after the motion: what was measured and drawn is of the motion alone."""
+        """How a copy ends after the motion: books and frames are of the motion alone, peaks and samples of all."""
         analysis, dt, motion_ends = self.case.analysis, self.step.step, sim.time
         history, longest = sim.settings.history, longest_coda(self.case, sim.model)
-        nothing = no_watch(sim)
+        every = self._every()
 
         def advance(n_steps: int) -> None:
-            sim.shake(self.ground.stretch(sim.time, n_steps, dt), n_steps, nothing)
-            since = sim.time - motion_ends
+            seen = shaken_on(sim, self.ground, self.job.monitors, n_steps, every)
+            self._tell(seen, coda=True)
+            self.extremes.see(seen)
             moved = measures.largest_displacement(sim)
-            self.track.observer.progress("coda", 0.0, moved, min(since / max(longest, dt), 1.0))
+            self.track.observer.progress("coda", 0.0, moved, min((sim.time - motion_ends) / max(longest, dt), 1.0))
 
         stretch = max(1, math.ceil(min(max(longest, history.one_more) / history.rows, history.longest_look) / dt))
         try:
@@ -203,24 +211,25 @@ class TimeHistory:
             self.job.warnings.append(f"how it ends is not known; after the motion: {error}")
             return Ending(MOVES, None, sim.time - motion_ends)
 
-    def _stretch(self, n_steps: int, every: int) -> np.ndarray:
-        """n_steps of motion, sampled every so many steps since the start of the run: the monitors, (n, n_monitors)."""
-        sim, monitors, dt = self.sim, self.job.monitors, self.step.step
-        done = round(sim.time / dt)
-        since = done % every  # steps since the last sample was due, which the stretch begins with
-        n_samples = -(-(since + n_steps) // every)
-        watch = sim.watch(monitors.watched, every, n_samples)
-        ground = self.ground.stretch((done - since) * dt, since + n_steps, dt)
-        new = 1 if since else 0  # the first sample of a stretch that begins between two is none
-        times, base = self.ground.sampled(done - since + every * new, max(n_samples - new, 0), every, dt)
-        sim.shake(ground, n_steps, watch, since, self.snapshots if self.track.frames else None)
+    def _every(self) -> int:
+        """Steps from one sample to the next."""
+        return max(1, round(1.0 / (self.case.output.rate * self.step.step)))
+
+    def _stretch(self, n_steps: int, every: int) -> Stretch:
+        """n_steps of motion, sampled every so many steps since the start of the run."""
+        sim = self.sim
+        seen = shaken_on(
+            sim, self.ground, self.job.monitors, n_steps, every, self.snapshots if self.track.frames else None
+        )
         check_finite(sim)
-        values = np.zeros((0, len(self.peaks)))
-        if n_samples > new:
-            values = monitors.series(watch.samples[new:], base, watch.links[new:])
-            self.track.observer.samples(Samples(times, base, values))
+        self._tell(seen, coda=False)
         sim.show_base(self.ground.along(sim.time), self.case.gravity)
-        return values
+        return seen
+
+    def _tell(self, seen: Stretch, coda: bool) -> None:
+        """The results of a stretch."""
+        self.overlap = max(self.overlap, seen.overlap)
+        self.track.observer.samples(Samples(seen.times, seen.base, seen.values, seen.extremes, coda))
 
     def _look(self) -> None:
         """The books of this instant; stops a run that makes energy."""

@@ -21,7 +21,7 @@ from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.dashpots import OPEN, STARTS, STICKS
 from dem_cli.kernels.jit import CompiledKernel
-from dem_cli.kernels.records import Dampers, Ground, Watch
+from dem_cli.kernels.records import NO_GAUGES, Dampers, Gauges, Ground, Watch
 from dem_cli.kernels.spatial_dashpots import GAINS
 from dem_cli.laws.law import Law
 from dem_cli.links.link import N_STATE
@@ -231,11 +231,11 @@ class DynamicSimulation(Simulation):
             if looker is not None and (done + step) % looker.every == 0:
                 looker.look()
 
-    def watch(self, blocks: np.ndarray, every: int, n_samples: int) -> Watch:
-        """Room for so many samples of blocks and of all links, every so many steps."""
+    def watch(self, blocks: np.ndarray, every: int, n_samples: int, gauges: Gauges = NO_GAUGES) -> Watch:
+        """Room for so many samples of blocks and of all links, every so many steps; gauges are read in each."""
         samples = np.zeros((n_samples, len(blocks), 3, self.model.rotations.stop))
         n_links = sum(len(link.state) for link in self.links)
-        return Watch(blocks, every, samples, np.zeros((n_samples, n_links, N_STATE)))
+        return Watch(blocks, every, samples, np.zeros((n_samples, n_links, N_STATE)), gauges)
 
     def _still(self, n_steps: int) -> Ground:
         """A ground at rest."""

@@ -7,10 +7,9 @@ import time
 from copy import deepcopy
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
 from dem_cli.dynamics.coda import Ending, ending, longest_coda
 from dem_cli.dynamics.collapse_criterion import check_energy, check_finite, fallen
+from dem_cli.dynamics.extremes import Extremes, shaken_on
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
 from dem_cli.engine.job import Job
@@ -59,19 +58,6 @@ class ProgressOnly(Observer):
         self.observer.progress(stage, load, displacement, fraction)
 
 
-class LargestValues:
-    """Largest absolute value of each monitor so far, (n_monitors,)."""
-
-    LASTING = frozenset[str]()
-
-    def __init__(self, count: int) -> None:
-        self.values = np.zeros(count)
-
-    def see(self, values: np.ndarray) -> None:
-        """A stretch of them, (n, n_monitors)."""
-        self.values = np.maximum(self.values, np.abs(values).max(axis=0))
-
-
 class _Stretches:
     """How far a motion has come."""
 
@@ -93,8 +79,6 @@ class RestedStructure:
         dt = self.step.step
         self.every = max(1, round(1.0 / (variant.case.output.rate * dt)))
         self.stretch = self.every * max(1, round(settings.history.look / (self.every * dt)))
-        # a fragility asks how far blocks go before they fall or rest, a time history for the time it names
-        self.peaks_of_coda = variant.case.analysis.kind == "fragility"
 
     def shaken(
         self,
@@ -109,7 +93,7 @@ class RestedStructure:
         begun = time.thread_time()
         sim = deepcopy(self.sim)
         ground = GroundMotion([motion.scaled(self.variant.motion) for motion in motions], self.variant.model)
-        peaks = LargestValues(len(self.case.monitor))
+        peaks = Extremes(len(self.case.monitor))
         collapsed, at, balance, word = None, None, None, ""
         try:
             end = self._shake(sim, ground, peaks, cancelled, told)
@@ -125,7 +109,7 @@ class RestedStructure:
         self,
         sim: DynamicSimulation,
         ground: GroundMotion,
-        peaks: LargestValues,
+        peaks: Extremes,
         cancelled: Callable[[], bool],
         told: Callable[[DynamicSimulation, float], None],
     ) -> Ending:
@@ -136,7 +120,7 @@ class RestedStructure:
         def advance(n_steps: int) -> None:
             if cancelled():
                 raise RunCancelled
-            self._stretch(sim, ground, n_steps, peaks if motion.done < total or self.peaks_of_coda else None)
+            peaks.see(shaken_on(sim, ground, self.monitors, n_steps, self.every, with_base=self.absolute))
 
         sim.stages.resumed(motion)
         while motion.done < total:
@@ -152,13 +136,3 @@ class RestedStructure:
             if found is not None:
                 return Ending(COLLAPSED, found)
         return ending(sim, analysis, longest_coda(self.case, sim.model), self.step, self.stretch, advance)
-
-    def _stretch(self, sim: DynamicSimulation, ground: GroundMotion, n_steps: int, peaks: LargestValues | None) -> None:
-        """n_steps of motion, with the peaks of the monitors where they are wanted."""
-        start, d = sim.time, sim.model.dimension
-        watch = sim.watch(self.monitors.watched, self.every, -(-n_steps // self.every))
-        sim.shake(ground.stretch(start, n_steps, self.step.step), n_steps, watch)
-        if peaks is not None and len(peaks.values):
-            times = start + self.step.step * self.every * np.arange(len(watch.samples))
-            base = ground.of_base(times) if self.absolute else np.zeros((len(times), 3, d))
-            peaks.see(self.monitors.series(watch.samples, base, watch.links))

@@ -40,6 +40,8 @@ class FoundPeak(SummaryTable):
     residual: Maybe
     time: Number
     unit: str
+    during_motion: Maybe = None
+    during_motion_time: Maybe = None
 
 
 class FoundMotion(SummaryTable):

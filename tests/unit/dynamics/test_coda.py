@@ -139,9 +139,8 @@ def test_words():
         "collapsed at 2.481 s, 1.23 s after the motion")  # fmt: skip
     assert ending_words({"collapsed": True, "collapse_time": 2.481}) == "collapsed at 2.481 s"
     assert ending_words({"collapsed": False, "ending": ROCKS}) == "stood, still rocking"
-    assert (
-        ending_words({"collapsed": None, "ending": MOVES}) == "still moving at the end: whether it falls is not known"
-    )
+    assert ending_words({"collapsed": None, "ending": MOVES}) == (
+        "still moving at the end: whether it falls is not known, and a larger peak may follow")  # fmt: skip
     assert ending_words({"collapsed": False}) == "stood"  # of earlier versions
     assert ending_words({"collapsed": None}) == ending_words({}) == ""
     assert last_words({"at_rest": False}) == "at the end, still moving"
