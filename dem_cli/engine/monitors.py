@@ -275,9 +275,15 @@ class Monitors:
             row[:] = 0.0 if monitor.along is None else monitor.along
         found = np.tile([-np.inf, 0.0, np.inf, 0.0], (len(gauged), 1))
         shift = slot.PLACE_IN_SPACE - slot.PLACE
+        kinds = np.array([GAUGES[monitor.quantity] + shift * monitor.absolute for monitor in gauged], np.int64)
+        components = np.array([self._component(monitor) for monitor in gauged], np.int64)
+        firsts = np.array([monitor.points[0] for monitor in gauged], np.int64)
+        alone = np.array([len(monitor.points) == 1 for monitor in gauged], bool) & (components >= 0)
+        read = (slot.PLACE, slot.SPEED, slot.TURN) if d == 2 else (slot.PLACE, slot.SPEED)
+        central = alone & ~places.arms[firsts].any(axis=1) & np.isin(kinds, read)
         return Gauges(
-            np.array([GAUGES[monitor.quantity] + shift * monitor.absolute for monitor in gauged], np.int64),
-            np.array([self._component(monitor) for monitor in gauged], np.int64),
+            kinds,
+            components,
             axes,
             np.cumsum([0] + [len(monitor.points) for monitor in gauged], dtype=np.int64),
             self.watched[places.rows[points]],
@@ -285,6 +291,9 @@ class Monitors:
             places.starts[points] + places.arms[points],
             np.concatenate([monitor.weights for monitor in gauged]) if gauged else np.zeros(0),
             base,
+            np.where(central, kinds, -1),
+            self.watched[places.rows[firsts]],
+            places.starts[firsts, np.maximum(components, 0)],
             found,
             np.array([np.inf, 0.0]),
         )  # fmt: skip

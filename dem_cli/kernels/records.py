@@ -326,6 +326,10 @@ class Gauges(NamedTuple):
     drawn: np.ndarray  # where the point was drawn [m], (n, d)
     weights: np.ndarray  # of the points in the mean, (n,)
     base: np.ndarray  # displacement and velocity of the base at every step [m, m/s], (n_steps, 2, d); (0, 2, d): unused
+    plain: np.ndarray  # kind of gauges of one component at the centroid of one block that need no more than one number:
+    # PLACE, SPEED, in the plane TURN; −1: others, (n_gauges,) int64
+    owners: np.ndarray  # block of their first point, (n_gauges,) int64
+    shifts: np.ndarray  # where it was drawn along that component [m], (n_gauges,)
     found: np.ndarray  # out: highest value, its step, lowest value, its step; the step is one of the stretch, (n, 4)
     tally: np.ndarray  # out: least gap of a point [m], and steps in which points met, (2,); (0,): not looked at
 
@@ -336,7 +340,7 @@ LEAST_GAP, MET = 0, 1  # of Gauges.tally
 _NUMBERS, _VECTORS = np.zeros(0, np.int64), np.zeros((0, 0))
 NO_GAUGES = Gauges(
     _NUMBERS, _NUMBERS, _VECTORS, _NUMBERS, _NUMBERS, _VECTORS, _VECTORS, np.zeros(0), np.zeros((0, 2, 0)),
-    np.zeros((0, 4)), np.zeros(0),
+    _NUMBERS, _NUMBERS, np.zeros(0), np.zeros((0, 4)), np.zeros(0),
 )  # fmt: skip
 
 

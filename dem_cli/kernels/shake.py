@@ -39,6 +39,7 @@ from dem_cli.kernels.records import (
     MASS,
     MASS_RATE,
     MET,
+    PLACE,
     PLACE_IN_SPACE,
     SPEED,
     SPEED_IN_SPACE,
@@ -151,73 +152,89 @@ def _sample_links(step, links, watch):
         place += state.shape[0]
 
 
-@inline
+@always_inline
 def _turned(bodies, block, arms, point, k, like):
     """Component k of the arm of a point, turned with its block [m]."""
     turns = bodies.turns
     if len(like) == 2:
-        if k == 0:
-            return turns[block, 0] * arms[point, 0] - turns[block, 1] * arms[point, 1]
-        return turns[block, 1] * arms[point, 0] + turns[block, 0] * arms[point, 1]
+        i, j = np.uint64(k), np.uint64(1 - k)
+        swept = turns[block, np.uint64(1)] * arms[point, j]
+        return turns[block, np.uint64(0)] * arms[point, i] + (swept if k == 1 else -swept)
     found = 0.0
     for m in range(len(like)):
-        found += turns[block, len(like) * k + m] * arms[point, m]
+        found += turns[block, np.uint64(len(like) * k + m)] * arms[point, np.uint64(m)]
     return found
 
 
-@inline
+@always_inline
 def _swept(bodies, block, arms, point, k, like):
     """Component k of ω × r [m/s]."""
     means, d, n_dof = bodies.means, len(like), bodies.velocities.shape[1]
-    first = block * n_dof + d
+    first = block * np.uint64(n_dof) + np.uint64(d)
     if d == 2:
-        across = _turned(bodies, block, arms, point, 1 - k, like)
-        return -means[first] * across if k == 0 else means[first] * across
+        across = means[first] * _turned(bodies, block, arms, point, 1 - k, like)
+        return -across if k == 0 else across
     i, j = (k + 1) % 3, (k + 2) % 3
     one, other = _turned(bodies, block, arms, point, j, like), _turned(bodies, block, arms, point, i, like)
-    return means[first + i] * one - means[first + j] * other
+    return means[first + np.uint64(i)] * one - means[first + np.uint64(j)] * other
 
 
-@inline
-def _component(g, k, step, bodies, gauges, like, like_rotation):
+@always_inline
+def _component(kind, first, last, k, step, bodies, gauges, like, like_rotation):
     """Component k of what a gauge reads now: the mean over its points."""
-    kind, arms, n_dof, found = gauges.kinds[g], gauges.arms, bodies.velocities.shape[1], 0.0
-    for point in range(gauges.starts[g], gauges.starts[g + 1]):
-        block = gauges.blocks[point]
+    arms, n_dof, found, column = gauges.arms, bodies.velocities.shape[1], 0.0, np.uint64(k)
+    for number in range(first, last):
+        point = np.uint64(number)
+        block = np.uint64(gauges.blocks[point])
         if kind == TURN:
             value = rotation(bodies.orientations, block, like_rotation)[k]
         elif kind in (SPEED, SPEED_IN_SPACE):
-            value = bodies.means[block * n_dof + k] + _swept(bodies, block, arms, point, k, like)
+            value = bodies.means[block * np.uint64(n_dof) + column] + _swept(bodies, block, arms, point, k, like)
         else:
             arm = _turned(bodies, block, arms, point, k, like)
-            value = bodies.positions[block, k] + arm - gauges.drawn[point, k]
+            value = bodies.positions[block, column] + arm - gauges.drawn[point, column]
         found += gauges.weights[point] * value
     if kind >= PLACE_IN_SPACE:
         found += gauges.base[step, kind - PLACE_IN_SPACE, k]
     return found
 
 
-@inline
+@always_inline
+def _mean_of_gauge(g, step, bodies, gauges, like, like_rotation):
+    """What a gauge of points, of several blocks or of a length reads now."""
+    component, kind = gauges.components[g], gauges.kinds[g]
+    first, last = gauges.starts[g], gauges.starts[g + 1]
+    if component >= 0:
+        return _component(kind, first, last, component, step, bodies, gauges, like, like_rotation)
+    value, n = 0.0, len(like_rotation) if kind == TURN else len(like)
+    for k in range(n):
+        part = _component(kind, first, last, k, step, bodies, gauges, like, like_rotation)
+        value += part * part if component == -1 else part * gauges.axes[g, k]
+    return value
+
+
+@always_inline
 def _read_gauges(step, bodies, gauges, like, like_rotation):
     """The extremes of all gauges with those of this step."""
     found = gauges.found
-    for g in range(found.shape[0]):
-        component = gauges.components[g]
-        if component >= 0:
-            value = _component(g, component, step, bodies, gauges, like, like_rotation)
+    for number in range(found.shape[0]):
+        g = np.uint64(number)
+        plain, block, component = gauges.plain[g], np.uint64(gauges.owners[g]), gauges.components[g]
+        if plain == PLACE:
+            value = bodies.positions[block, np.uint64(component)] - gauges.shifts[g]
+        elif plain == SPEED:
+            value = bodies.means[block * np.uint64(bodies.velocities.shape[1]) + np.uint64(component)]
+        elif plain == TURN:
+            value = bodies.orientations[block, np.uint64(component)]
         else:
-            value = 0.0
-            n = len(like_rotation) if gauges.kinds[g] == TURN else len(like)
-            for k in range(n):
-                part = _component(g, k, step, bodies, gauges, like, like_rotation)
-                value += part * part if component == -1 else part * gauges.axes[g, k]
+            value = _mean_of_gauge(number, step, bodies, gauges, like, like_rotation)
         if value > found[g, HIGHEST]:
             found[g, HIGHEST], found[g, HIGHEST_AT] = value, step
         if value < found[g, LOWEST]:
             found[g, LOWEST], found[g, LOWEST_AT] = value, step
 
 
-@inline
+@always_inline
 def _tally_gaps(gaps, tally):
     """The least gap so far: four at a time, as a minimum waits for the one before."""
     n = gaps.shape[0]
