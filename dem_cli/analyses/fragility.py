@@ -23,7 +23,7 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, Task, each
 from dem_cli.ensembles.capacities import Bounds, Outcomes, bounds_of, distribution, outcomes, split, survived_above
 from dem_cli.ensembles.record_search import bisection, records_of, runs_per_record, scaled
-from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure
+from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, told_peaks
 from dem_cli.ensembles.variants import Variant
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
@@ -112,7 +112,7 @@ class FragilityStudy:
             run, peak = self.batcher.done[trial], max(motion.peak for motion in self._motion(trial))
             acceleration = peak * self.rested[trial.structure].variant.motion
             rows.append(RunRow(trial.structure, self.names[trial.record], trial.intensity, acceleration,
-                               run.collapsed, run.time, run.how, run.peaks))  # fmt: skip
+                               run.collapsed, run.time, run.how, told_peaks(self.case.monitor, run)))  # fmt: skip
         return rows
 
     # -- what the runs say -------------------------------------------------------------------------

@@ -23,6 +23,7 @@ from dem_cli.output.resume.stages import stage
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
+    from dem_cli.dynamics.extremes import Extremes, Stretch
     from dem_cli.dynamics.time_step import TimeStep
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.model.model import Model
@@ -88,10 +89,11 @@ def ending(
     longest: float,
     step: TimeStep,
     stretch: int,
-    advance: Callable[[int], None],
+    extremes: Extremes,
+    advance: Callable[[int], Stretch],
 ) -> Ending:
     """How `sim` ends, which has come to the end of its motion; `advance` takes it on by so many steps, `stretch` of
-    them or less at a time. Raises SolverError where it blows up.
+    them or less at a time, whose extremes go to `extremes`. Raises SolverError where it blows up.
 
     longest: how long it is followed at most [s]; what hardly moves then, for the second that shows whether it rests.
     """
@@ -103,7 +105,7 @@ def ending(
         if found is not None:
             return found
         n = min(stretch, most - coda.done) if coda.done < most else stretch
-        advance(n)
+        extremes.see(advance(n))
         coda.done, coda.looks = coda.done + n, coda.looks + 1
         check_finite(sim)
         if coda.looks % history.energy_every == 0:

@@ -9,6 +9,9 @@ import numpy as np
 from dem_cli.kernels import records as slot
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from dem_cli.case.schema import Monitor
     from dem_cli.dynamics.ground import GroundMotion
     from dem_cli.engine.dynamic import DynamicSimulation, Looker
     from dem_cli.engine.monitors import Monitors
@@ -25,6 +28,14 @@ class Stretch(NamedTuple):
     impacts: int  # steps in which contact points met, where joints have dashpots
 
 
+def without_meaning(monitors: Sequence[Monitor], impacts: int) -> list[int]:
+    """Numbers of monitors whose peaks mean nothing: accelerations where blocks hit each other.
+
+    An impact of stiff joints lasts as long as these are soft, and its acceleration is what that makes it.
+    """
+    return [i for i, monitor in enumerate(monitors) if impacts and monitor.quantity == "acceleration"]
+
+
 class Extremes:
     """Largest absolute value of each monitor, and the largest overlap, of all stretches so far."""
 
@@ -38,6 +49,10 @@ class Extremes:
         """One stretch more."""
         ends = np.abs(stretch.extremes[:, [slot.HIGHEST, slot.LOWEST]])
         self.values = np.maximum(self.values, np.where(np.isfinite(ends), ends, 0.0).max(axis=1, initial=0.0))
+        self.go_on(stretch)
+
+    def go_on(self, stretch: Stretch) -> None:
+        """One stretch more, whose values do not count: that of a fall."""
         self.overlap, self.impacts = max(self.overlap, stretch.overlap), self.impacts + stretch.impacts
 
 

@@ -14,7 +14,7 @@ from dem_cli.dynamics.coda import Ending, ending, longest_coda
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen_blocks
 from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
 from dem_cli.dynamics.damping import damping_of
-from dem_cli.dynamics.extremes import Extremes, Stretch, shaken_on
+from dem_cli.dynamics.extremes import Extremes, Stretch, shaken_on, without_meaning
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.initial_state import set_initial
 from dem_cli.dynamics.snapshots import Snapshots
@@ -67,7 +67,6 @@ class TimeHistory:
         self.track: Track = job.track(self.sim)
         self.snapshots = Snapshots(self.track, self.sim, ground, job.case.gravity, job.case.output.frames)
         self.extremes = Extremes(len(job.case.monitor))  # before a collapse is seen
-        self.overlap = 0.0  # largest of all that was followed [m]
         self.closed: float | None = None  # error of the energy book when a collapse was seen
         self.farthest = 0.0  # that a block went against the ground [m], look by look
 
@@ -165,6 +164,8 @@ class TimeHistory:
                 break
             if motion.fallen is None:
                 self._look_for_falls(motion, seen)
+            else:
+                self.extremes.go_on(seen)
             motion.done += n
             self.snapshots.look()
             moved = measures.largest_displacement(sim)
@@ -197,16 +198,16 @@ class TimeHistory:
         history, longest = sim.settings.history, longest_coda(self.case, sim.model)
         every = self._every()
 
-        def advance(n_steps: int) -> None:
+        def advance(n_steps: int) -> Stretch:
             seen = shaken_on(sim, self.ground, self.job.monitors, n_steps, every)
             self._tell(seen, coda=True)
-            self.extremes.see(seen)
             moved = measures.largest_displacement(sim)
             self.track.observer.progress("coda", 0.0, moved, min((sim.time - motion_ends) / max(longest, dt), 1.0))
+            return seen
 
         stretch = max(1, math.ceil(min(max(longest, history.one_more) / history.rows, history.longest_look) / dt))
         try:
-            return ending(sim, analysis, longest, self.step, stretch, advance)
+            return ending(sim, analysis, longest, self.step, stretch, self.extremes, advance)
         except SolverError as error:
             self.job.warnings.append(f"how it ends is not known; after the motion: {error}")
             return Ending(MOVES, None, sim.time - motion_ends)
@@ -228,14 +229,12 @@ class TimeHistory:
 
     def _tell(self, seen: Stretch, coda: bool) -> None:
         """The results of a stretch."""
-        self.overlap = max(self.overlap, seen.overlap)
         self.track.observer.samples(Samples(seen.times, seen.base, seen.values, seen.extremes, coda))
 
     def _look(self) -> None:
         """The books of this instant; stops a run that makes energy."""
         sim = self.sim
         row = self.track.write("shaking")
-        self.overlap = max(self.overlap, row.overlap)
         check_energy(sim, self.step, row.energy)
 
     def _outcome(self, found: dict[str, Any]) -> Outcome:
@@ -249,6 +248,12 @@ class TimeHistory:
                 "slows every motion; use it for nothing but a test"
             )
         self._doubt_what_follows()
+        impacts = self.extremes.impacts
+        if without_meaning(self.case.monitor, impacts):
+            self.job.warnings.append(
+                "no peak accelerations are given: blocks hit each other, and how hard is up to the stiffness of the "
+                "joints; history.csv has the samples"
+            )
         return self.job.outcome([sim], found | {
             "time_step": self.step.step,
             "largest_time_step": self.step.limit,
@@ -256,8 +261,9 @@ class TimeHistory:
             "peak_ground_acceleration": self.ground.peak,
             "damping": self.damping.words,
             "energy_shares": shares,
+            "impacts": impacts,
             "largest_displacement": measures.largest_displacement(sim),
-            "largest_overlap": self.overlap,
+            "largest_overlap": self.extremes.overlap,
             "unbalanced_force": None,
             "joint_state": joint_state(sim, END),
         })  # fmt: skip

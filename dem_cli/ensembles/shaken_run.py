@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from dem_cli.dynamics.coda import Ending, ending, longest_coda
 from dem_cli.dynamics.collapse_criterion import check_energy, check_finite, fallen
-from dem_cli.dynamics.extremes import Extremes, shaken_on
+from dem_cli.dynamics.extremes import Extremes, Stretch, shaken_on, without_meaning
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
 from dem_cli.engine.job import Job
@@ -22,6 +22,7 @@ from dem_cli.output.resume.stages import NOTHING_KEPT, Stages, stage
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from dem_cli.case.schema import Monitor
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.ensembles.variants import Variant
     from dem_cli.motion.motion import Motion
@@ -38,6 +39,13 @@ class ShakenRunResult(NamedTuple):
     closure: float | None  # energy error over the largest energy
     seconds: float  # CPU of the thread [s]
     ending: str = ""  # one of those of output/record.py; empty where the run failed
+    impacts: int = 0  # steps in which contact points met
+
+
+def told_peaks(monitors: Sequence[Monitor], run: ShakenRunResult) -> tuple[float, ...]:
+    """The peaks of a run; nan where they mean nothing."""
+    left_out = without_meaning(monitors, run.impacts)
+    return tuple(math.nan if i in left_out else peak for i, peak in enumerate(run.peaks))
 
 
 class RunCancelled(Exception):
@@ -102,7 +110,9 @@ class RestedStructure:
         else:
             collapsed, at, how, balance, word = end.how == COLLAPSED, end.time, end.why, closure(sim), end.how
         steps, seconds = sim.steps - self.sim.steps, time.thread_time() - begun
-        return ShakenRunResult(collapsed, at, how, tuple(peaks.values.tolist()), steps, balance, seconds, word)
+        return ShakenRunResult(
+            collapsed, at, how, tuple(peaks.values.tolist()), steps, balance, seconds, word, peaks.impacts
+        )
 
     @stage
     def _shake(
@@ -117,16 +127,16 @@ class RestedStructure:
         analysis, dt = self.case.analysis, self.step.step
         total, motion = math.ceil((analysis.duration or ground.duration) / dt), _Stretches()
 
-        def advance(n_steps: int) -> None:
+        def advance(n_steps: int) -> Stretch:
             if cancelled():
                 raise RunCancelled
-            peaks.see(shaken_on(sim, ground, self.monitors, n_steps, self.every, with_base=self.absolute))
+            return shaken_on(sim, ground, self.monitors, n_steps, self.every, with_base=self.absolute)
 
         sim.stages.resumed(motion)
         while motion.done < total:
             sim.stages.offer(motion)
             n = min(self.stretch, total - motion.done)
-            advance(n)
+            peaks.see(advance(n))
             motion.done, motion.looks = motion.done + n, motion.looks + 1
             told(sim, motion.done / total)
             check_finite(sim)
@@ -135,4 +145,4 @@ class RestedStructure:
             found = fallen(sim, analysis)
             if found is not None:
                 return Ending(COLLAPSED, found)
-        return ending(sim, analysis, longest_coda(self.case, sim.model), self.step, self.stretch, advance)
+        return ending(sim, analysis, longest_coda(self.case, sim.model), self.step, self.stretch, peaks, advance)

@@ -273,7 +273,7 @@ class RunRow(NamedTuple):
     collapsed: bool | None  # None: the run failed
     time: float | None  # of the collapse [s]
     how: str  # what collapsed and how, or why the run failed
-    peaks: tuple[float, ...]  # largest absolute values, in the order of the case's [[monitor]] tables
+    peaks: tuple[float, ...]  # largest absolute values, as the [[monitor]] tables are; nan: it means nothing
 
 
 def distinct(names: Iterable[str]) -> list[str]:

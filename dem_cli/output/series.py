@@ -92,10 +92,18 @@ class SeriesWriter:
         high, low, each = values.argmax(axis=0), values.argmin(axis=0), np.arange(values.shape[1])
         return np.column_stack([values[high, each], samples.times[high], values[low, each], samples.times[low]])
 
-    def peaks(self) -> dict[str, dict[str, float | str]]:
-        """Extremes with their times, the last value and the unit of each monitor, by name."""
-        found = zip(self.names, self.quantities, self._peaks)
-        return {name: {**peak._asdict(), "unit": MONITOR_UNITS[quantity]} for name, quantity, peak in found}
+    def peaks(self, impacts: bool = False) -> dict[str, dict[str, float | str | None]]:
+        """Extremes with their times, the last value and the unit of each monitor, by name.
+
+        impacts: whether blocks hit each other: of accelerations the last value alone means something then.
+        """
+        found: dict[str, dict[str, float | str | None]] = {}
+        for name, quantity, peak in zip(self.names, self.quantities, self._peaks):
+            known: dict[str, float | str | None] = dict(peak._asdict())
+            if impacts and quantity.endswith("acceleration"):
+                known = dict.fromkeys(known) | {"residual": peak.residual}
+            found[name] = known | {"unit": MONITOR_UNITS[quantity]}
+        return found
 
     def flush(self) -> None:
         """Hand what was kept to the file."""

@@ -92,6 +92,7 @@ def _shaken(summary: Mapping[str, Any]) -> tuple[str, str, str]:
     more = [
         f"{name}: peak {_value(found['peak'], found['unit'])} at {found['time']:.4g} s"
         for name, found in list(peaks.items())[:1]
+        if found["peak"] is not None
     ]
     ground = summary.get("peak_ground_acceleration")
     more += [] if ground is None else [f"peak ground acceleration {ground:.3g} m/s²"]

@@ -227,6 +227,8 @@ def _shaking_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 def _peak_words(found: Mapping[str, Any]) -> str:
     """A peak and its time; that of the motion beside it, where it came after the motion."""
+    if found["peak"] is None:
+        return "no peak, blocks hit each other"
     said = f"{_measure(found['peak'], found['unit'])} at {found['time']:.4g} s"
     during, time = found.get("during_motion"), found.get("during_motion_time", found["time"])
     if during is None or time == found["time"]:

@@ -22,6 +22,7 @@ _PLACES = {
     "contact.start": ("CornerMeetings",),
     "dynamics.coda": ("Ending", "Swings"),
     "dynamics.collapse_criterion": ("CollapsedBlock",),
+    "dynamics.extremes": ("Extremes",),
     "dynamics.snapshots": ("EvenTimes", "Intervals"),
     "engine.loads": ("ActingForces",),
     "engine.measures": ("EnergySums",),
