@@ -17,6 +17,7 @@ from dem_cli.output.record import MONITOR_UNITS, Samples
 
 BASE = ("acceleration", "velocity", "displacement")  # as Samples.base
 _AXES = "xyz"
+_EQUAL = 1e-6  # of a peak: what is not larger by more is the same, that of an undamped swing that comes again
 _TEXT = h5py.string_dtype()
 
 
@@ -74,8 +75,9 @@ class SeriesWriter:
             most, least = (high, high_time), (low, low_time)
             before = self._peaks[i] if i < len(self._peaks) else None
             if before is not None:  # the earlier one of two that are equal
-                most = most if most[0] > before.max else (before.max, before.max_time)
-                least = least if least[0] < before.min else (before.min, before.min_time)
+                same = _EQUAL * max(before.max, -before.min)
+                most = most if most[0] > before.max + same else (before.max, before.max_time)
+                least = least if least[0] < before.min - same else (before.min, before.min_time)
             largest = least if -least[0] > most[0] or (-least[0] == most[0] and least[1] < most[1]) else most
             last, during = float(samples.monitors[-1, i]) if len(samples.monitors) else 0.0, largest
             if before is not None and (samples.coda or not len(samples.monitors)):
