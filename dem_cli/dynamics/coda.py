@@ -141,7 +141,7 @@ def undecided(moving: int, runs: int, coda: float) -> list[str]:
     if not moving:
         return []
     return [
-        f"{moving} of {runs} runs still moved {coda:g} s after the motion and count as standing: a longer "
+        f"{moving} of {runs} runs still moved {coda:.3g} s after the motion and count as standing: a longer "
         "analysis.coda may tell whether they fall"
     ]
 

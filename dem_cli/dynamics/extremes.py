@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.engine.measures import largest_displacement
 from dem_cli.kernels import records as slot
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ class Stretch(NamedTuple):
     values: np.ndarray  # of the monitors there, (n, n_monitors)
     extremes: np.ndarray  # as Monitors.extremes, (n_monitors, 4)
     overlap: float  # the largest of a contact point at any step [m]
-    impacts: int  # steps in which contact points met, where joints have dashpots
+    impacts: int  # steps in which contact points met, where joints have dashpots and a block has moved visibly
 
 
 def without_meaning(monitors: Sequence[Monitor], impacts: int) -> list[int]:
@@ -90,4 +91,5 @@ def shaken_on(
         values = monitors.series(watch.samples[new:], base, watch.links[new:])
     overlap = max(0.0, -float(gauges.tally[slot.LEAST_GAP]))
     extremes = monitors.extremes(gauges, times, values, start, dt)
-    return Stretch(times, base, values, extremes, overlap, int(gauges.tally[slot.MET]))
+    moved = largest_displacement(sim) >= sim.settings.history.noticeable * sim.smallest
+    return Stretch(times, base, values, extremes, overlap, int(gauges.tally[slot.MET]) if moved else 0)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.dynamics.coda import Ending, ending, longest_coda
+from dem_cli.dynamics.coda import Ending, ending, hardly_moves, longest_coda
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen_blocks
 from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
 from dem_cli.dynamics.damping import damping_of
@@ -32,7 +32,7 @@ from dem_cli.engine.viscous import Damping
 from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
-from dem_cli.output.record import COLLAPSED, FALLS, MOVES, Energy, Samples
+from dem_cli.output.record import COLLAPSED, FALLS, MOVES, STOOD, Energy, Samples
 from dem_cli.output.resume.stages import stage
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.mechanism import named
@@ -196,18 +196,28 @@ class TimeHistory:
         """How a copy ends after the motion: books and frames are of the motion alone, peaks and samples of all."""
         analysis, dt, motion_ends = self.case.analysis, self.step.step, sim.time
         history, longest = sim.settings.history, longest_coda(self.case, sim.model)
-        every = self._every()
+        every, waiting = self._every(), list[Stretch]()  # what shows a structure at rest is not worth keeping
+
+        def tell() -> None:
+            for seen in waiting:
+                self._tell(seen, coda=True)
+            waiting.clear()
 
         def advance(n_steps: int) -> Stretch:
             seen = shaken_on(sim, self.ground, self.job.monitors, n_steps, every)
-            self._tell(seen, coda=True)
+            waiting.append(seen)
+            if not hardly_moves(sim):
+                tell()
             moved = measures.largest_displacement(sim)
             self.track.observer.progress("coda", 0.0, moved, min((sim.time - motion_ends) / max(longest, dt), 1.0))
             return seen
 
         stretch = max(1, math.ceil(min(max(longest, history.one_more) / history.rows, history.longest_look) / dt))
         try:
-            return ending(sim, analysis, longest, self.step, stretch, self.extremes, advance)
+            end = ending(sim, analysis, longest, self.step, stretch, self.extremes, advance)
+            if end.how != STOOD:
+                tell()
+            return end
         except SolverError as error:
             self.job.warnings.append(f"how it ends is not known; after the motion: {error}")
             return Ending(MOVES, None, sim.time - motion_ends)

@@ -59,9 +59,8 @@ def lost_supports(sim: DynamicSimulation, least: np.ndarray) -> np.ndarray:
     up = sim.model.dimension - 1
     sank = sim.reference_positions[:, up] - sim.bodies.positions[:, up]
     lowered = np.full(len(sank), np.inf)  # by which a block sank farther than all that carried it; inf: nothing did
-    of_carriers = sank[_block_of(sim, carriers.faces)]
-    for block, theirs in zip(carriers.blocks.tolist(), of_carriers.tolist()):
-        lowered[block] = min(lowered[block], sank[block] - max(theirs, 0.0))
+    with_it = np.maximum(sank[_block_of(sim, carriers.faces)], 0.0)
+    np.minimum.at(lowered, carriers.blocks, sank[carriers.blocks] - with_it)
     for k in np.flatnonzero((lowered[sim.free] > least) & np.isfinite(lowered[sim.free])):
         block = int(sim.free[k])
         faces = carriers.faces[carriers.blocks == block]

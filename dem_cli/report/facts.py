@@ -90,7 +90,7 @@ def _shaken(summary: Mapping[str, Any]) -> tuple[str, str, str]:
         return _status(summary)
     peaks = summary.get("peaks") or {}
     more = [
-        f"{name}: peak {_value(found['peak'], found['unit'])} at {found['time']:.4g} s"
+        f"{name}: peak {_value(found['peak'], found['unit'])}"
         for name, found in list(peaks.items())[:1]
         if found["peak"] is not None
     ]
