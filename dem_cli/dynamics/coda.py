@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.arithmetic.products import product
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen
 from dem_cli.engine.measures import contact_record
 from dem_cli.engine.settings import DEFAULT
@@ -23,7 +24,7 @@ from dem_cli.output.resume.stages import stage
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
-    from dem_cli.dynamics.extremes import Extremes, Stretch
+    from dem_cli.dynamics.extremes import Extremes, MotionStretch
     from dem_cli.dynamics.time_step import TimeStep
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.model.model import Model
@@ -90,7 +91,7 @@ def ending(
     step: TimeStep,
     stretch: int,
     extremes: Extremes,
-    advance: Callable[[int], Stretch],
+    advance: Callable[[int], MotionStretch],
 ) -> Ending:
     """How `sim` ends, which has come to the end of its motion; `advance` takes it on by so many steps, `stretch` of
     them or less at a time, whose extremes go to `extremes`. Raises SolverError where it blows up.
@@ -164,10 +165,21 @@ def balances(sim: DynamicSimulation) -> bool:
     for block in np.unique(owners):
         if model.held[block].any() or int(block) in linked:
             continue
-        arms = places[owners == block]
-        if np.linalg.matrix_rank(arms - arms.mean(axis=0), tol=least) < model.dimension - 1:
+        if _on_an_edge(places[owners == block], least):
             return True
     return False
+
+
+def _on_an_edge(places: np.ndarray, least: float) -> bool:
+    """Whether points (n, d) are no farther than `least` [m] from one place, or in space from one line."""
+    arms = places - places[0]
+    lengths = np.sqrt(np.square(arms).sum(axis=1))
+    longest = float(lengths.max())
+    if longest <= least or arms.shape[1] == 2:
+        return longest <= least
+    way = arms[lengths.argmax()] / longest
+    aside = arms - product(arms, way)[:, np.newaxis] * way
+    return bool(np.square(aside).sum(axis=1).max() <= least**2)
 
 
 class Swings:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from dem_cli.engine.monitors import Monitors
 
 
-class Stretch(NamedTuple):
+class MotionStretch(NamedTuple):
     """What a stretch of motion showed."""
 
     times: np.ndarray  # of the samples [s], (n,)
@@ -46,13 +46,13 @@ class Extremes:
         self.values = np.zeros(count)
         self.overlap, self.impacts = 0.0, 0
 
-    def see(self, stretch: Stretch) -> None:
+    def see(self, stretch: MotionStretch) -> None:
         """One stretch more."""
         ends = np.abs(stretch.extremes[:, [slot.HIGHEST, slot.LOWEST]])
         self.values = np.maximum(self.values, np.where(np.isfinite(ends), ends, 0.0).max(axis=1, initial=0.0))
         self.go_on(stretch)
 
-    def go_on(self, stretch: Stretch) -> None:
+    def go_on(self, stretch: MotionStretch) -> None:
         """One stretch more, whose values do not count: that of a fall."""
         self.overlap, self.impacts = max(self.overlap, stretch.overlap), self.impacts + stretch.impacts
 
@@ -65,7 +65,7 @@ def shaken_on(
     every: int,
     looker: Looker | None = None,
     with_base: bool = True,
-) -> Stretch:
+) -> MotionStretch:
     """n_steps of motion: samples every so many steps since the start of the run, extremes of every step.
 
     with_base: whether the motion of the base at the samples is wanted; else it is left at zero.
@@ -92,4 +92,4 @@ def shaken_on(
     overlap = max(0.0, -float(gauges.tally[slot.LEAST_GAP]))
     extremes = monitors.extremes(gauges, times, values, start, dt)
     moved = largest_displacement(sim) >= sim.settings.history.noticeable * sim.smallest
-    return Stretch(times, base, values, extremes, overlap, int(gauges.tally[slot.MET]) if moved else 0)
+    return MotionStretch(times, base, values, extremes, overlap, int(gauges.tally[slot.MET]) if moved else 0)

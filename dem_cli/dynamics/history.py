@@ -14,7 +14,7 @@ from dem_cli.dynamics.coda import Ending, ending, hardly_moves, longest_coda
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen_blocks
 from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
 from dem_cli.dynamics.damping import damping_of
-from dem_cli.dynamics.extremes import Extremes, Stretch, shaken_on, without_meaning
+from dem_cli.dynamics.extremes import Extremes, MotionStretch, shaken_on, without_meaning
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.initial_state import set_initial
 from dem_cli.dynamics.snapshots import Snapshots
@@ -173,7 +173,7 @@ class TimeHistory:
             self.track.observer.progress("shaking", sim.load, moved, min(sim.time / motion.end, 1.0))
         return motion.fallen
 
-    def _look_for_falls(self, motion: _Shaking, seen: Stretch) -> None:
+    def _look_for_falls(self, motion: _Shaking, seen: MotionStretch) -> None:
         """Peaks of the monitors, with those of the last stretch, and whether a block has fallen since."""
         self.extremes.see(seen)
         motion.fallen = fallen_block(self.sim, self.case.analysis)
@@ -196,14 +196,14 @@ class TimeHistory:
         """How a copy ends after the motion: books and frames are of the motion alone, peaks and samples of all."""
         analysis, dt, motion_ends = self.case.analysis, self.step.step, sim.time
         history, longest = sim.settings.history, longest_coda(self.case, sim.model)
-        every, waiting = self._every(), list[Stretch]()  # what shows a structure at rest is not worth keeping
+        every, waiting = self._every(), list[MotionStretch]()  # what shows a structure at rest is not worth keeping
 
         def tell() -> None:
             for seen in waiting:
                 self._tell(seen, coda=True)
             waiting.clear()
 
-        def advance(n_steps: int) -> Stretch:
+        def advance(n_steps: int) -> MotionStretch:
             seen = shaken_on(sim, self.ground, self.job.monitors, n_steps, every)
             waiting.append(seen)
             if not hardly_moves(sim):
@@ -226,7 +226,7 @@ class TimeHistory:
         """Steps from one sample to the next."""
         return max(1, round(1.0 / (self.case.output.rate * self.step.step)))
 
-    def _stretch(self, n_steps: int, every: int) -> Stretch:
+    def _stretch(self, n_steps: int, every: int) -> MotionStretch:
         """n_steps of motion, sampled every so many steps since the start of the run."""
         sim = self.sim
         seen = shaken_on(
@@ -237,7 +237,7 @@ class TimeHistory:
         sim.show_base(self.ground.along(sim.time), self.case.gravity)
         return seen
 
-    def _tell(self, seen: Stretch, coda: bool) -> None:
+    def _tell(self, seen: MotionStretch, coda: bool) -> None:
         """The results of a stretch."""
         self.track.observer.samples(Samples(seen.times, seen.base, seen.values, seen.extremes, coda))
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from dem_cli.dynamics.coda import Ending, ending, longest_coda
 from dem_cli.dynamics.collapse_criterion import check_energy, check_finite, fallen
-from dem_cli.dynamics.extremes import Extremes, Stretch, shaken_on, without_meaning
+from dem_cli.dynamics.extremes import Extremes, MotionStretch, shaken_on, without_meaning
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
 from dem_cli.engine.job import Job
@@ -127,7 +127,7 @@ class RestedStructure:
         analysis, dt = self.case.analysis, self.step.step
         total, motion = math.ceil((analysis.duration or ground.duration) / dt), _Stretches()
 
-        def advance(n_steps: int) -> Stretch:
+        def advance(n_steps: int) -> MotionStretch:
             if cancelled():
                 raise RunCancelled
             return shaken_on(sim, ground, self.monitors, n_steps, self.every, with_base=self.absolute)
