@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from dem_cli.analyses.estimate_cost import cost_of_shaking
 from dem_cli.analyses.modes import touching_points
+from dem_cli.dynamics.coda import longest_coda
 from dem_cli.dynamics.frequencies import modes, system
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import duration_of
@@ -75,7 +76,7 @@ def _cost(case: Case, sim: DynamicSimulation, step: TimeStep, automatic: bool) -
     if not math.isfinite(step.step):
         return rows
     steps = math.ceil(length / step.step)
-    more = math.ceil(analysis.coda / step.step)
+    more = math.ceil(longest_coda(case, sim.model) / step.step)
     return [
         *rows,
         ("steps", f"{steps:,}"),

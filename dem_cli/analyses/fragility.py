@@ -15,7 +15,7 @@ import numpy as np
 
 from dem_cli.dynamics.bending_stiffness import bending_doubts
 from dem_cli.dynamics.braked_motion import braked_words
-from dem_cli.dynamics.coda import undecided
+from dem_cli.dynamics.coda import longest_coda, undecided
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import duration_of
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
@@ -33,7 +33,7 @@ from dem_cli.ensembles.capacities import (
     survived_above,
 )
 from dem_cli.ensembles.record_search import bisection, records_of, runs_per_record, scaled
-from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure
+from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, told_peaks
 from dem_cli.ensembles.variants import Variant
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
@@ -66,6 +66,7 @@ class FragilityStudy:
         self.motions = [motion for record in self.records for motion in record.components]
         duration_of(case, GroundMotion(self.motions, model))  # which must be known
         self.stiffness = rocking_stiffness(case, model, settings)
+        self.coda = longest_coda(case, model)
         self.settings = self.stiffness.applied(settings)
         self.warnings = [self.stiffness.doubt] if self.stiffness.turn > settings.rocking.doubtful else []
         self.warnings += bending_doubts(case, model, settings)
@@ -121,7 +122,7 @@ class FragilityStudy:
             run, peak = self.batcher.done[trial], max(motion.peak for motion in self._motion(trial))
             acceleration = peak * self.rested[trial.structure].variant.motion
             rows.append(RunRow(trial.structure, self.names[trial.record], trial.intensity, acceleration,
-                               run.collapsed, run.time, run.how, run.peaks))  # fmt: skip
+                               run.collapsed, run.time, run.how, told_peaks(self.case.monitor, run)))  # fmt: skip
         return rows
 
     # -- what the runs say -------------------------------------------------------------------------
@@ -179,7 +180,7 @@ class FragilityStudy:
             self.warnings.append(f"{self.names[trial.record]} at {trial.intensity:g}: {run.how}")
         if failed:
             self.warnings.append(f"{len(failed)} of {len(done)} runs failed and are left out")
-        self.warnings += undecided(sum(run.ending == MOVES for run in done.values()), len(done), self.analysis.coda)
+        self.warnings += undecided(sum(run.ending == MOVES for run in done.values()), len(done), self.coda)
 
     def _warn_about(self, answer: dict[str, Any], intervals: int) -> None:
         """What a reader of the curve must know; intervals: different bounds of capacities."""

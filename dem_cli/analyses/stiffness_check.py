@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.dynamics.extremes import without_meaning
 from dem_cli.dynamics.rocking_stiffness import RockingStiffness
 from dem_cli.engine.measures import largest_displacement
 from dem_cli.engine.settings import Settings
@@ -61,6 +62,7 @@ def checked(
     elif not collapsed:
         least = trifles(job.case.monitor, history.peaks, history.sim.smallest, job.case.gravity, settings)
         moved = change(history.peaks, np.array(run.peaks), least)
+        moved[without_meaning(job.case.monitor, history.extremes.impacts)] = 0.0
         found["softer_joints_move"] = float(moved.max()) if len(moved) else None
         said = _doubts(job, factor, moved, rocking.moved)
     if chosen.turn > rocking.doubtful:

@@ -17,14 +17,15 @@ import numpy as np
 
 from dem_cli.analyses.stiffness_check import checked
 from dem_cli.dynamics.bending_stiffness import bending_doubts
-from dem_cli.dynamics.coda import undecided
+from dem_cli.dynamics.coda import longest_coda, undecided
+from dem_cli.dynamics.extremes import without_meaning
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, each
-from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult
+from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult, told_peaks
 from dem_cli.ensembles.variants import Variant
 from dem_cli.model.model import Model
 from dem_cli.motion.ground_motions import motions_of
@@ -99,8 +100,11 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
     fell = case.analysis.repeats - len(trials)
     if fell:
         warnings.append(f"{fell} of {case.analysis.repeats} perturbed structures do not stand: left out")
-    found = spread([run for run in runs if run.ending], len(case.monitor))
-    warnings += undecided(found["still_moving"], found["runs"], case.analysis.coda)
+    ended = [run for run in runs if run.ending]
+    found = spread(ended, len(case.monitor))
+    for i in without_meaning(case.monitor, max((run.impacts for run in ended), default=0)):
+        found["peaks"][i] = None
+    warnings += undecided(found["still_moving"], found["runs"], longest_coda(case, model))
     return {
         "repeats": found | {"seconds": sum(run.seconds for run in runs)},
         "repeat_seconds": time.perf_counter() - started,
@@ -160,7 +164,7 @@ def _rows(
     return [
         RunRow(
             1 + trial.structure, "", 1.0, peak * structures[trial.structure].variant.motion, run.collapsed, run.time,
-            run.how, run.peaks,
+            run.how, told_peaks(structures[trial.structure].case.monitor, run),
         )
         for trial, run in zip(trials, runs, strict=True)
     ]  # fmt: skip

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dem_cli.dynamics.supports import lost_supports
 from dem_cli.engine import measures
 from dem_cli.engine.measures import closure
 from dem_cli.errors import SolverError
@@ -27,7 +28,7 @@ class CollapsedBlock(NamedTuple):
 
 
 def fallen(sim: DynamicSimulation, analysis: ShakingAnalysis) -> CollapsedBlock | None:
-    """The block that turned or sank farthest beyond the limits of the case, where there is one."""
+    """The block that turned or sank farthest beyond the limits of the case or lost its support, where there is one."""
     for values, limits, word, unit in _measured(sim, analysis):
         over = values - limits
         if len(over) and over.max() > 0.0:
@@ -37,7 +38,7 @@ def fallen(sim: DynamicSimulation, analysis: ShakingAnalysis) -> CollapsedBlock 
 
 
 def fallen_blocks(sim: DynamicSimulation, analysis: ShakingAnalysis) -> np.ndarray:
-    """Numbers of all blocks that turned or sank beyond the limits of the case, ascending."""
+    """Numbers of all blocks that turned or sank beyond the limits of the case or lost their support, ascending."""
     over = [values > limits for values, limits, _, _ in _measured(sim, analysis)]
     return sim.free[np.any(over, axis=0)]
 
@@ -47,10 +48,13 @@ def _measured(sim: DynamicSimulation, analysis: ShakingAnalysis) -> list[tuple[n
     free, d = sim.free, sim.model.dimension
     leans = np.degrees(leans_of(sim.bodies.orientations[free]))
     sank = sim.reference_positions[free, d - 1] - sim.bodies.positions[free, d - 1]
-    drops = sim.widths[free] if analysis.dropped is None else np.full(len(free), analysis.dropped)
+    drops = least = np.full(len(free), analysis.dropped or 0.0)
+    if analysis.dropped is None:
+        drops, least = sim.widths[free], sim.settings.history.sinks * sim.widths[free]
     return [
         (leans, np.full(len(free), analysis.fallen_deg), "turned by", "°"),
         (sank, drops, "sank by", " m"),
+        (lost_supports(sim, least), least, "lost its support and sank by", " m"),
     ]
 
 

@@ -11,18 +11,20 @@ import numpy as np
 
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.dynamics.braked_motion import BrakedMotion, braked_words
-from dem_cli.dynamics.coda import Ending, ending
+from dem_cli.dynamics.coda import Ending, ending, hardly_moves, longest_coda
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen_blocks
 from dem_cli.dynamics.collapse_criterion import fallen as fallen_block
 from dem_cli.dynamics.damping import damping_of
+from dem_cli.dynamics.extremes import Extremes, MotionStretch, shaken_on, without_meaning
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.initial_state import set_initial
 from dem_cli.dynamics.snapshots import Snapshots
+from dem_cli.dynamics.supports import carriers_of
 from dem_cli.dynamics.time_step import TimeStep, time_step
 from dem_cli.dynamics.vibration_error import refined
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
-from dem_cli.engine.dynamic import DynamicSimulation, no_watch
+from dem_cli.engine.dynamic import DynamicSimulation
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.measures import closure
@@ -32,7 +34,7 @@ from dem_cli.engine.viscous import Damping
 from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
-from dem_cli.output.record import COLLAPSED, FALLS, MOVES, Energy, Samples
+from dem_cli.output.record import COLLAPSED, FALLS, MOVES, STOOD, Energy, Samples
 from dem_cli.output.resume.stages import stage
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.mechanism import named
@@ -66,7 +68,7 @@ class TimeHistory:
         self.sim, self.step = self._simulation()
         self.track: Track = job.track(self.sim)
         self.snapshots = Snapshots(self.track, self.sim, ground, job.case.gravity, job.case.output.frames)
-        self.overlap, self.peaks = 0.0, np.zeros(len(job.case.monitor))  # of all monitors, before a collapse is seen
+        self.extremes = Extremes(len(job.case.monitor))  # before a collapse is seen
         self.closed: float | None = None  # error of the energy book when a collapse was seen
         self.farthest = 0.0  # that a block went against the ground [m], look by look
         self.braked = BrakedMotion(self.sim)
@@ -90,6 +92,11 @@ class TimeHistory:
         return sim, found
 
     @property
+    def peaks(self) -> np.ndarray:
+        """Largest absolute value of each monitor in all that was followed, before a collapse is seen, (n_monitors,)."""
+        return self.extremes.values
+
+    @property
     def still(self) -> bool:
         """Whether the ground moved and no block did, by more than joints deform."""
         return self.ground.peak > 0.0 and self.farthest < self.sim.settings.history.noticeable * self.sim.smallest
@@ -110,6 +117,7 @@ class TimeHistory:
                 self.track.frame("gravity")
                 return False
         sim.begin(self.step.step)
+        sim.take_carriers(carriers_of(sim))
         if case.initial:
             set_initial(case, sim)
         if case.initial or not case.analysis.settle:
@@ -143,7 +151,7 @@ class TimeHistory:
     def _through_motion(self, total: int) -> CollapsedBlock | None:
         """Stretches of the motion, of so many steps in all; returns the block that fell first."""
         history, sim, dt = self.job.settings.history, self.sim, self.step.step
-        every = max(1, round(1.0 / (self.case.output.rate * dt)))
+        every = self._every()
         stretch = max(1, math.ceil(min(total / history.rows, history.longest_look / dt)))
         motion = _Shaking(self.duration)
         if not sim.stages.resumed(motion):
@@ -152,7 +160,7 @@ class TimeHistory:
             sim.stages.offer(motion)
             n = min(stretch, total - motion.done, max(1, math.ceil((motion.end - sim.time) / dt - 0.5)))
             try:
-                values = self._stretch(n, every)
+                seen = self._stretch(n, every)
                 self._look()
             except SolverError as error:
                 if motion.fallen is None:
@@ -160,7 +168,9 @@ class TimeHistory:
                 self.job.warnings.append(f"the collapse is known, not what follows: {error}")
                 break
             if motion.fallen is None:
-                self._look_for_falls(motion, values)
+                self._look_for_falls(motion, seen)
+            else:
+                self.extremes.go_on(seen)
             motion.done += n
             self.snapshots.look()
             moved = measures.largest_displacement(sim)
@@ -168,9 +178,9 @@ class TimeHistory:
             self.track.observer.progress("shaking", sim.load, moved, min(sim.time / motion.end, 1.0))
         return motion.fallen
 
-    def _look_for_falls(self, motion: _Shaking, values: np.ndarray) -> None:
-        """Peaks of the monitors, whose values are those of the last stretch, and whether a block has fallen since."""
-        np.maximum(self.peaks, np.abs(values).max(axis=0, initial=0.0), out=self.peaks)
+    def _look_for_falls(self, motion: _Shaking, seen: MotionStretch) -> None:
+        """Peaks of the monitors, with those of the last stretch, and whether a block has fallen since."""
+        self.extremes.see(seen)
         motion.fallen = fallen_block(self.sim, self.case.analysis)
         if motion.fallen is not None:
             self.closed = closure(self.sim)
@@ -188,48 +198,58 @@ class TimeHistory:
         return found | {"ending": end.how, "at_rest": end.still, "followed": end.followed}
 
     def _followed(self, sim: DynamicSimulation) -> Ending:
-        """How a copy ends after the motion: what was measured and drawn is of the motion alone."""
+        """How a copy ends after the motion: books and frames are of the motion alone, peaks and samples of all."""
         analysis, dt, motion_ends = self.case.analysis, self.step.step, sim.time
-        history = sim.settings.history
-        nothing = no_watch(sim)
+        history, longest = sim.settings.history, longest_coda(self.case, sim.model)
+        every, waiting = self._every(), list[MotionStretch]()  # what shows a structure at rest is not worth keeping
 
-        def advance(n_steps: int) -> None:
-            sim.shake(self.ground.stretch(sim.time, n_steps, dt), n_steps, nothing)
-            since = sim.time - motion_ends
+        def tell() -> None:
+            for seen in waiting:
+                self._tell(seen, coda=True)
+            waiting.clear()
+
+        def advance(n_steps: int) -> MotionStretch:
+            seen = shaken_on(sim, self.ground, self.job.monitors, n_steps, every)
+            waiting.append(seen)
+            if not hardly_moves(sim):
+                tell()
             moved = measures.largest_displacement(sim)
-            self.track.observer.progress("coda", 0.0, moved, min(since / analysis.coda, 1.0))
+            self.track.observer.progress("coda", 0.0, moved, min((sim.time - motion_ends) / max(longest, dt), 1.0))
+            return seen
 
-        stretch = max(1, math.ceil(min(analysis.coda / history.rows, history.longest_look) / dt))
+        stretch = max(1, math.ceil(min(max(longest, history.one_more) / history.rows, history.longest_look) / dt))
         try:
-            return ending(sim, analysis, self.step, stretch, advance)
+            end = ending(sim, analysis, longest, self.step, stretch, self.extremes, advance)
+            if end.how != STOOD:
+                tell()
+            return end
         except SolverError as error:
             self.job.warnings.append(f"how it ends is not known; after the motion: {error}")
             return Ending(MOVES, None, sim.time - motion_ends)
 
-    def _stretch(self, n_steps: int, every: int) -> np.ndarray:
-        """n_steps of motion, sampled every so many steps since the start of the run: the monitors, (n, n_monitors)."""
-        sim, monitors, dt = self.sim, self.job.monitors, self.step.step
-        done = round(sim.time / dt)
-        since = done % every  # steps since the last sample was due, which the stretch begins with
-        n_samples = -(-(since + n_steps) // every)
-        watch = sim.watch(monitors.watched, every, n_samples)
-        ground = self.ground.stretch((done - since) * dt, since + n_steps, dt)
-        new = 1 if since else 0  # the first sample of a stretch that begins between two is none
-        times, base = self.ground.sampled(done - since + every * new, max(n_samples - new, 0), every, dt)
-        sim.shake(ground, n_steps, watch, since, self.snapshots if self.track.frames else None)
+    def _every(self) -> int:
+        """Steps from one sample to the next."""
+        return max(1, round(1.0 / (self.case.output.rate * self.step.step)))
+
+    def _stretch(self, n_steps: int, every: int) -> MotionStretch:
+        """n_steps of motion, sampled every so many steps since the start of the run."""
+        sim = self.sim
+        seen = shaken_on(
+            sim, self.ground, self.job.monitors, n_steps, every, self.snapshots if self.track.frames else None
+        )
         check_finite(sim)
-        values = np.zeros((0, len(self.peaks)))
-        if n_samples > new:
-            values = monitors.series(watch.samples[new:], base, watch.links[new:])
-            self.track.observer.samples(Samples(times, base, values))
+        self._tell(seen, coda=False)
         sim.show_base(self.ground.along(sim.time), self.case.gravity)
-        return values
+        return seen
+
+    def _tell(self, seen: MotionStretch, coda: bool) -> None:
+        """The results of a stretch."""
+        self.track.observer.samples(Samples(seen.times, seen.base, seen.values, seen.extremes, coda))
 
     def _look(self) -> None:
         """The books of this instant; stops a run that makes energy."""
         sim = self.sim
         row = self.track.write("shaking")
-        self.overlap = max(self.overlap, row.overlap)
         self.braked.look(sim)
         check_energy(sim, self.step, row.energy)
 
@@ -248,6 +268,12 @@ class TimeHistory:
         if braked > self.job.settings.doubts.governs:
             self.job.warnings.append(braked_words(self.case, braked))
             self.job.contradictions.append(f"mass damping took {100.0 * braked:.0f} % of the energy")
+        impacts = self.extremes.impacts
+        if without_meaning(self.case.monitor, impacts):
+            self.job.warnings.append(
+                "no peak accelerations are given: blocks hit each other, and how hard is up to the stiffness of the "
+                "joints; history.csv has the samples"
+            )
         return self.job.outcome([sim], found | {
             "time_step": self.step.step,
             "largest_time_step": self.step.limit,
@@ -255,8 +281,9 @@ class TimeHistory:
             "peak_ground_acceleration": self.ground.peak,
             "damping": self.damping.words,
             "energy_shares": shares,
+            "impacts": impacts,
             "largest_displacement": measures.largest_displacement(sim),
-            "largest_overlap": self.overlap,
+            "largest_overlap": self.extremes.overlap,
             "unbalanced_force": None,
             "joint_state": joint_state(sim, END),
             "contradictions": self.job.contradictions,

@@ -24,6 +24,7 @@ def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[
     said, doubts = [], sims[0].settings.doubts
     worst = max((closure(sim) for sim in sims), key=abs)
     overlap = max(measures.largest_overlap(sim) / sim.smallest for sim in sims)
+    overlap = max(overlap, (found.get("largest_overlap") or 0.0) / sims[0].smallest)  # of all of a motion
     if abs(worst) > doubts.closure:
         advice = "lower analysis.margin" if hasattr(case.analysis, "margin") else "do not trust this run"
         said.append(f"the energy does not close: {worst:.2%} is missing; {advice}")

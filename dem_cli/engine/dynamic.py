@@ -14,14 +14,14 @@ from dem_cli.contact.joints import JointProperties
 from dem_cli.engine.loops import compiled_shake
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
-from dem_cli.engine.state import Books
+from dem_cli.engine.state import NO_CARRIERS, Books, Carriers
 from dem_cli.engine.viscous import Damping, strain_rates, turned_loads
 from dem_cli.geometry.inertia import along_principal, gyration, mobilities
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.dashpots import OPEN, STARTS, STICKS
 from dem_cli.kernels.jit import CompiledKernel
-from dem_cli.kernels.records import Dampers, Ground, Watch
+from dem_cli.kernels.records import NO_GAUGES, Dampers, Gauges, Ground, Watch
 from dem_cli.kernels.spatial_dashpots import GAINS
 from dem_cli.laws.law import Law
 from dem_cli.links.link import N_STATE
@@ -60,6 +60,7 @@ class DynamicSimulation(Simulation):
         properties = properties._replace(integrated=None)  # blocks land on the points of their joints
         super().__init__(model, law, properties, "large", settings=settings)
         self.dead_loads = self.loads.dead.copy()  # before velocities have mean spins
+        self.carriers = NO_CARRIERS  # what carried blocks when the motion began (dynamics/supports.py)
         self.takes_back = False  # springs that press at the start go on pressing
 
     def __getstate__(self) -> dict[str, Any]:
@@ -99,6 +100,10 @@ class DynamicSimulation(Simulation):
         bodies.mobilities[:] = mobilities(shape.inertias, shape.axes, bodies.turns)
         self.turns_of_means = bodies.turns.copy()
         self.contacts.exchanged[:] = 0.0
+
+    def take_carriers(self, carriers: Carriers) -> None:
+        """What carries the blocks when the motion begins."""
+        self.carriers = carriers
 
     @property
     def loads_turn(self) -> bool:
@@ -226,11 +231,11 @@ class DynamicSimulation(Simulation):
             if looker is not None and (done + step) % looker.every == 0:
                 looker.look()
 
-    def watch(self, blocks: np.ndarray, every: int, n_samples: int) -> Watch:
-        """Room for so many samples of blocks and of all links, every so many steps."""
+    def watch(self, blocks: np.ndarray, every: int, n_samples: int, gauges: Gauges = NO_GAUGES) -> Watch:
+        """Room for so many samples of blocks and of all links, every so many steps; gauges are read in each."""
         samples = np.zeros((n_samples, len(blocks), 3, self.model.rotations.stop))
         n_links = sum(len(link.state) for link in self.links)
-        return Watch(blocks, every, samples, np.zeros((n_samples, n_links, N_STATE)))
+        return Watch(blocks, every, samples, np.zeros((n_samples, n_links, N_STATE)), gauges)
 
     def _still(self, n_steps: int) -> Ground:
         """A ground at rest."""

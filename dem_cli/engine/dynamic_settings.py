@@ -52,11 +52,20 @@ class HistorySettings:
     shortest: float = 0.1  # ... to no less than this share
     modes: int = 12  # the slowest, which are looked at for it where there are many
     noticeable: float = 1e-3  # of the smallest edge: energy that lifts the whole structure by it, ways that are none
+    carries: float = 1e-3  # of its weight: what pushes a block up with less does not carry it
+    sinks: float = 0.03  # of its least width, that a block sinks below what carried it to have lost that support ...
+    touches: float = 0.01  # ... where it is farther from these faces than so much of the smallest edge, or beside them
     still: float = 0.01  # unbalanced force, in weights of a block, below which it has come to rest ...
     quiet: float = 1e-3  # ... with so much of the noticeable energy at most
     steady: float = 0.01  # of the smallest edge: what blocks may go beyond earlier places and have turned back
     grows: float = 0.05  # of the way between these, that they may have gone beyond in passing
     least_coda: float = 0.4  # of the coda, before which no structure that moves is taken for one that has turned back
+    least_limit: float = 5.0  # s that a structure is followed after its motion at most, or longer where it is tall:
+    limit: float = 20.0  # so many √(half its height / g); a block near its balance falls or turns back within ten
+    one_more: float = 1.0  # s that what hardly moves must go on hardly moving to be at rest
+    doubles: float = 2.0  # of the way of the first half of a time, that the second half adds where a motion grows ...
+    creeps: float = 1e-6  # ... and so much of the smallest edge: below it nothing has moved
+    edge: float = 1e-6  # of the smallest edge: points no farther from one place, or one line in space, are an edge
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,8 @@ import numpy as np
 from dem_cli.arithmetic.products import norm, product
 from dem_cli.engine.measures import PointPushes, point_pushes, reactions
 from dem_cli.geometry.rotation import angles_of, beside, moments, rotation_vectors, swept, tangents_of, turning
-from dem_cli.kernels.records import NO_LINKS
+from dem_cli.kernels import records as slot
+from dem_cli.kernels.records import NO_LINKS, Gauges
 from dem_cli.links.link import N_STATE, LinkReading
 from dem_cli.links.matrices import reading_of
 from dem_cli.model.model import Model
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from dem_cli.contact.between import StartJoints
     from dem_cli.engine.simulation import Simulation
 
+GAUGES = {"displacement": slot.PLACE, "velocity": slot.SPEED, "rotation": slot.TURN}  # whose extremes are of all steps
 OF_BASE = {"acceleration": 0, "velocity": 1, "displacement": 2}  # as output.record.Samples.base
 
 
@@ -252,6 +254,75 @@ class Monitors:
             for column, (rows, what, weights) in self._of_links:
                 out[:, column] = product(links[:, list(rows), what], np.array(weights))
         return out
+
+    @cached_property
+    def gauged(self) -> tuple[PointMonitor, ...]:
+        """Monitors whose extremes are taken at every step of a time history: displacements, velocities, rotations."""
+        return tuple(monitor for monitor in self._at_points if monitor.quantity in GAUGES)
+
+    @property
+    def absolute(self) -> bool:
+        """Whether any of these is measured in space, with the motion of the base."""
+        return any(monitor.absolute for monitor in self.gauged)
+
+    def gauges(self, base: np.ndarray) -> Gauges:
+        """Gauges of `gauged`, in their order, for one stretch. base: as Gauges.base."""
+        d, gauged = self.model.dimension, self.gauged
+        points = [point for monitor in gauged for point in monitor.points]
+        places = self._points
+        axes = np.zeros((len(gauged), d))
+        for row, monitor in zip(axes, gauged):
+            row[:] = 0.0 if monitor.along is None else monitor.along
+        found = np.tile([-np.inf, 0.0, np.inf, 0.0], (len(gauged), 1))
+        shift = slot.PLACE_IN_SPACE - slot.PLACE
+        kinds = np.array([GAUGES[monitor.quantity] + shift * monitor.absolute for monitor in gauged], np.int64)
+        components = np.array([self._component(monitor) for monitor in gauged], np.int64)
+        firsts = np.array([monitor.points[0] for monitor in gauged], np.int64)
+        alone = np.array([len(monitor.points) == 1 for monitor in gauged], bool) & (components >= 0)
+        read = (slot.PLACE, slot.SPEED, slot.TURN) if d == 2 else (slot.PLACE, slot.SPEED)
+        central = alone & ~places.arms[firsts].any(axis=1) & np.isin(kinds, read)
+        return Gauges(
+            kinds,
+            components,
+            axes,
+            np.cumsum([0] + [len(monitor.points) for monitor in gauged], dtype=np.int64),
+            self.watched[places.rows[points]],
+            places.strained[points],
+            places.starts[points] + places.arms[points],
+            np.concatenate([monitor.weights for monitor in gauged]) if gauged else np.zeros(0),
+            base,
+            np.where(central, kinds, -1),
+            self.watched[places.rows[firsts]],
+            places.starts[firsts, np.maximum(components, 0)],
+            found,
+            np.array([np.inf, 0.0]),
+        )  # fmt: skip
+
+    def extremes(self, gauges: Gauges, times: np.ndarray, values: np.ndarray, start: float, dt: float) -> np.ndarray:
+        """Highest value and its time, lowest and its time [s] of all monitors over a stretch, (n_monitors, 4).
+
+        Of `gauged` at every step, whose number 0 is at `start` [s]; of others those of their samples, at `times`. Where
+        there are none: minus and plus infinity.
+        """
+        found = np.tile([-np.inf, 0.0, np.inf, 0.0], (len(self.tables), 1))
+        if len(times):
+            known = np.where(np.isfinite(values), values, 0.0)  # a run may end in nonsense
+            high, low, each = known.argmax(axis=0), known.argmin(axis=0), np.arange(values.shape[1])
+            found[:] = np.column_stack([known[high, each], times[high], known[low, each], times[low]])
+        for monitor, row in zip(self.gauged, gauges.found):
+            high, at, low, low_at = row
+            if self._component(monitor) == -1:
+                high, low = np.sqrt(max(high, 0.0)), np.sqrt(low)
+            found[monitor.column] = high, start + dt * at, low, start + dt * low_at
+        return found
+
+    def _component(self, monitor: PointMonitor) -> int:
+        """As Gauges.components; a rotation in the plane is a number."""
+        if monitor.quantity == "rotation" and self.model.dimension == 2:
+            return 0
+        if monitor.along is not None:
+            return -2
+        return -1 if monitor.component is None else "xyz".index(monitor.component)
 
     def _blocks(self) -> list[tuple[int, ...]]:
         """Blocks of each monitor; that there are any is checked with the model."""

@@ -12,6 +12,17 @@ from dem_cli.kernels.records import Bodies, Contacts, Joints
 NONE_MEET = np.zeros(0, bool)
 
 
+class Carriers(NamedTuple):
+    """What carried the free blocks of a time history at its start: pairs of a block and a face of another one."""
+
+    blocks: np.ndarray  # the block that is carried, ascending, (n,) int64
+    faces: np.ndarray  # and a face (model.topology) that carries it, (n,) int64
+    above: np.ndarray  # numbers of the blocks whose centre was above what their faces cover together in plan, (m,)
+
+
+NO_CARRIERS = Carriers(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0, np.int64))
+
+
 class SavedState(NamedTuple):
     """Everything of a simulation that changes, at one instant: what `restore` goes back to."""
 

@@ -7,11 +7,10 @@ import time
 from copy import deepcopy
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
 from dem_cli.dynamics.braked_motion import BrakedMotion
-from dem_cli.dynamics.coda import Ending, ending
+from dem_cli.dynamics.coda import Ending, ending, longest_coda
 from dem_cli.dynamics.collapse_criterion import check_energy, check_finite, fallen
+from dem_cli.dynamics.extremes import Extremes, MotionStretch, shaken_on, without_meaning
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
 from dem_cli.engine.job import Job
@@ -24,6 +23,7 @@ from dem_cli.output.resume.stages import NOTHING_KEPT, Stages, stage
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from dem_cli.case.schema import Monitor
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.ensembles.variants import Variant
     from dem_cli.motion.motion import Motion
@@ -41,6 +41,13 @@ class ShakenRunResult(NamedTuple):
     seconds: float  # CPU of the thread [s]
     ending: str = ""  # one of those of output/record.py; empty where the run failed
     braked: float = 0.0  # share of the energy that mass damping took from blocks that rock, slide or fall
+    impacts: int = 0  # steps in which contact points met
+
+
+def told_peaks(monitors: Sequence[Monitor], run: ShakenRunResult) -> tuple[float, ...]:
+    """The peaks of a run; nan where they mean nothing."""
+    left_out = without_meaning(monitors, run.impacts)
+    return tuple(math.nan if i in left_out else peak for i, peak in enumerate(run.peaks))
 
 
 class RunCancelled(Exception):
@@ -59,19 +66,6 @@ class ProgressOnly(Observer):
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """Hands on where the run stands."""
         self.observer.progress(stage, load, displacement, fraction)
-
-
-class LargestValues:
-    """Largest absolute value of each monitor so far, (n_monitors,)."""
-
-    LASTING = frozenset[str]()
-
-    def __init__(self, count: int) -> None:
-        self.values = np.zeros(count)
-
-    def see(self, values: np.ndarray) -> None:
-        """A stretch of them, (n, n_monitors)."""
-        self.values = np.maximum(self.values, np.abs(values).max(axis=0))
 
 
 class _Stretches:
@@ -95,8 +89,6 @@ class RestedStructure:
         dt = self.step.step
         self.every = max(1, round(1.0 / (variant.case.output.rate * dt)))
         self.stretch = self.every * max(1, round(settings.history.look / (self.every * dt)))
-        # a fragility asks how far blocks go before they fall or rest, a time history for the time it names
-        self.peaks_of_coda = variant.case.analysis.kind == "fragility"
 
     def shaken(
         self,
@@ -111,7 +103,7 @@ class RestedStructure:
         begun = time.thread_time()
         sim = deepcopy(self.sim)
         ground = GroundMotion([motion.scaled(self.variant.motion) for motion in motions], self.variant.model)
-        peaks, braked = LargestValues(len(self.case.monitor)), BrakedMotion(sim)
+        peaks, braked = Extremes(len(self.case.monitor)), BrakedMotion(sim)
         collapsed, at, balance, word = None, None, None, ""
         try:
             end = self._shake(sim, ground, peaks, braked, cancelled, told)
@@ -121,14 +113,16 @@ class RestedStructure:
             collapsed, at, how, balance, word = end.collapsed, end.time, end.why, closure(sim), end.how
         steps, seconds = sim.steps - self.sim.steps, time.thread_time() - begun
         share = braked.share(sim, energy(sim)) if word else 0.0
-        return ShakenRunResult(collapsed, at, how, tuple(peaks.values.tolist()), steps, balance, seconds, word, share)
+        return ShakenRunResult(
+            collapsed, at, how, tuple(peaks.values.tolist()), steps, balance, seconds, word, share, peaks.impacts
+        )
 
     @stage
     def _shake(
         self,
         sim: DynamicSimulation,
         ground: GroundMotion,
-        peaks: LargestValues,
+        peaks: Extremes,
         braked: BrakedMotion,
         cancelled: Callable[[], bool],
         told: Callable[[DynamicSimulation, float], None],
@@ -137,17 +131,18 @@ class RestedStructure:
         analysis, dt = self.case.analysis, self.step.step
         total, motion = math.ceil((analysis.duration or ground.duration) / dt), _Stretches()
 
-        def advance(n_steps: int) -> None:
+        def advance(n_steps: int) -> MotionStretch:
             if cancelled():
                 raise RunCancelled
-            self._stretch(sim, ground, n_steps, peaks if motion.done < total or self.peaks_of_coda else None)
+            stretch = shaken_on(sim, ground, self.monitors, n_steps, self.every, with_base=self.absolute)
             braked.look(sim)
+            return stretch
 
         sim.stages.resumed(motion)
         while motion.done < total:
             sim.stages.offer(motion)
             n = min(self.stretch, total - motion.done)
-            advance(n)
+            peaks.see(advance(n))
             motion.done, motion.looks = motion.done + n, motion.looks + 1
             told(sim, motion.done / total)
             check_finite(sim)
@@ -156,14 +151,4 @@ class RestedStructure:
             found = fallen(sim, analysis)
             if found is not None:
                 return Ending(COLLAPSED, found)
-        return ending(sim, analysis, self.step, self.stretch, advance)
-
-    def _stretch(self, sim: DynamicSimulation, ground: GroundMotion, n_steps: int, peaks: LargestValues | None) -> None:
-        """n_steps of motion, with the peaks of the monitors where they are wanted."""
-        start, d = sim.time, sim.model.dimension
-        watch = sim.watch(self.monitors.watched, self.every, -(-n_steps // self.every))
-        sim.shake(ground.stretch(start, n_steps, self.step.step), n_steps, watch)
-        if peaks is not None and len(peaks.values):
-            times = start + self.step.step * self.every * np.arange(len(watch.samples))
-            base = ground.of_base(times) if self.absolute else np.zeros((len(times), 3, d))
-            peaks.see(self.monitors.series(watch.samples, base, watch.links))
+        return ending(sim, analysis, longest_coda(self.case, sim.model), self.step, self.stretch, peaks, advance)

@@ -311,6 +311,39 @@ class Dampers(NamedTuple):
 NO_LINKS = np.zeros((0, 0, 3))
 
 
+class Gauges(NamedTuple):
+    """Numbers whose extremes are taken at every step (kernels/gauges.py); gauge g reads points starts[g]:starts[g + 1].
+
+    Of each the mean over its points, along one axis, or the square of its length.
+    """
+
+    kinds: np.ndarray  # PLACE, SPEED or TURN, and the first two with the base, (n_gauges,) int64
+    components: np.ndarray  # axis; −1: square of the length; −2: along `axes`, (n_gauges,) int64
+    axes: np.ndarray  # unit, (n_gauges, d)
+    starts: np.ndarray  # (n_gauges + 1,) int64
+    blocks: np.ndarray  # block of each point, (n,) int64
+    arms: np.ndarray  # from its centroid, in its own axes [m], (n, d)
+    drawn: np.ndarray  # where the point was drawn [m], (n, d)
+    weights: np.ndarray  # of the points in the mean, (n,)
+    base: np.ndarray  # displacement and velocity of the base at every step [m, m/s], (n_steps, 2, d); (0, 2, d): unused
+    plain: np.ndarray  # kind of gauges of one component at the centroid of one block that need no more than one number:
+    # PLACE, SPEED, in the plane TURN; −1: others, (n_gauges,) int64
+    owners: np.ndarray  # block of their first point, (n_gauges,) int64
+    shifts: np.ndarray  # where it was drawn along that component [m], (n_gauges,)
+    found: np.ndarray  # out: highest value, its step, lowest value, its step; the step is one of the stretch, (n, 4)
+    tally: np.ndarray  # out: least gap of a point [m], and steps in which points met, (2,); (0,): not looked at
+
+
+PLACE, SPEED, TURN, PLACE_IN_SPACE, SPEED_IN_SPACE = 0, 1, 2, 3, 4  # of Gauges.kinds
+HIGHEST, HIGHEST_AT, LOWEST, LOWEST_AT = 0, 1, 2, 3  # columns of Gauges.found
+LEAST_GAP, MET = 0, 1  # of Gauges.tally
+_NUMBERS, _VECTORS = np.zeros(0, np.int64), np.zeros((0, 0))
+NO_GAUGES = Gauges(
+    _NUMBERS, _NUMBERS, _VECTORS, _NUMBERS, _NUMBERS, _VECTORS, _VECTORS, np.zeros(0), np.zeros((0, 2, 0)),
+    _NUMBERS, _NUMBERS, np.zeros(0), np.zeros((0, 4)), np.zeros(0),
+)  # fmt: skip
+
+
 class Watch(NamedTuple):
     """Blocks whose motion is sampled: place, velocity and acceleration at one instant, relative to the base."""
 
@@ -318,6 +351,7 @@ class Watch(NamedTuple):
     every: int  # steps from one sample to the next
     samples: np.ndarray  # out: of the steps 0, every, 2 every ... of a stretch, (n_samples, n_watched, 3, n_dof)
     links: np.ndarray = NO_LINKS  # out: state of all links at these steps (links/link.py), (n_samples, n_links, 3)
+    gauges: Gauges = NO_GAUGES  # what is looked at in every step
 
 
 NOT_INTEGRATED, INTEGRATED = 0, 1  # of Joints.integrated

@@ -3,6 +3,7 @@
 Leapfrog with real masses, in the frame that moves with the base: positions and forces at whole steps, velocities half
 a step behind. The ledger sums what each group of forces really did, force × mean velocity. In space torques kick with
 the tensors of inertia of the whole step, before and after which blocks turn freely (kernels/spin.py).
+Samples miss what lies between two of them; so the extremes of places, velocities and turns are taken at every step.
 Velocities of blocks that deform have mean spins, behind these rates of modes (kernels/deformation/strain_rates.py).
 """
 
@@ -30,10 +31,21 @@ from dem_cli.kernels.records import (
     DASHPOT,
     EXTERNAL,
     FRICTION,
+    HIGHEST,
+    HIGHEST_AT,
+    LEAST_GAP,
+    LOWEST,
+    LOWEST_AT,
     MASS,
     MASS_RATE,
+    MET,
+    PLACE,
+    PLACE_IN_SPACE,
+    SPEED,
+    SPEED_IN_SPACE,
     SUPPORT,
     TRAVEL_LIMIT,
+    TURN,
     UNBALANCED,
 )
 from dem_cli.kernels.spatial_dashpots import meet, resist
@@ -140,6 +152,101 @@ def _sample_links(step, links, watch):
         place += state.shape[0]
 
 
+@always_inline
+def _turned(bodies, block, arms, point, k, like):
+    """Component k of the arm of a point, turned with its block [m]."""
+    turns = bodies.turns
+    if len(like) == 2:
+        i, j = np.uint64(k), np.uint64(1 - k)
+        swept = turns[block, np.uint64(1)] * arms[point, j]
+        return turns[block, np.uint64(0)] * arms[point, i] + (swept if k == 1 else -swept)
+    found = 0.0
+    for m in range(len(like)):
+        found += turns[block, np.uint64(len(like) * k + m)] * arms[point, np.uint64(m)]
+    return found
+
+
+@always_inline
+def _swept(bodies, block, arms, point, k, like):
+    """Component k of ω × r [m/s]."""
+    means, d, n_dof = bodies.means, len(like), bodies.velocities.shape[1]
+    first = block * np.uint64(n_dof) + np.uint64(d)
+    if d == 2:
+        across = means[first] * _turned(bodies, block, arms, point, 1 - k, like)
+        return -across if k == 0 else across
+    i, j = (k + 1) % 3, (k + 2) % 3
+    one, other = _turned(bodies, block, arms, point, j, like), _turned(bodies, block, arms, point, i, like)
+    return means[first + np.uint64(i)] * one - means[first + np.uint64(j)] * other
+
+
+@always_inline
+def _component(kind, first, last, k, step, bodies, gauges, like, like_rotation):
+    """Component k of what a gauge reads now: the mean over its points."""
+    arms, n_dof, found, column = gauges.arms, bodies.velocities.shape[1], 0.0, np.uint64(k)
+    for number in range(first, last):
+        point = np.uint64(number)
+        block = np.uint64(gauges.blocks[point])
+        if kind == TURN:
+            value = rotation(bodies.orientations, block, like_rotation)[k]
+        elif kind in (SPEED, SPEED_IN_SPACE):
+            value = bodies.means[block * np.uint64(n_dof) + column] + _swept(bodies, block, arms, point, k, like)
+        else:
+            arm = _turned(bodies, block, arms, point, k, like)
+            value = bodies.positions[block, column] + arm - gauges.drawn[point, column]
+        found += gauges.weights[point] * value
+    if kind >= PLACE_IN_SPACE:
+        found += gauges.base[step, kind - PLACE_IN_SPACE, k]
+    return found
+
+
+@always_inline
+def _mean_of_gauge(g, step, bodies, gauges, like, like_rotation):
+    """What a gauge of points, of several blocks or of a length reads now."""
+    component, kind = gauges.components[g], gauges.kinds[g]
+    first, last = gauges.starts[g], gauges.starts[g + 1]
+    if component >= 0:
+        return _component(kind, first, last, component, step, bodies, gauges, like, like_rotation)
+    value, n = 0.0, len(like_rotation) if kind == TURN else len(like)
+    for k in range(n):
+        part = _component(kind, first, last, k, step, bodies, gauges, like, like_rotation)
+        value += part * part if component == -1 else part * gauges.axes[g, k]
+    return value
+
+
+@always_inline
+def _read_gauges(step, bodies, gauges, like, like_rotation):
+    """The extremes of all gauges with those of this step."""
+    found = gauges.found
+    for number in range(found.shape[0]):
+        g = np.uint64(number)
+        plain, block, component = gauges.plain[g], np.uint64(gauges.owners[g]), gauges.components[g]
+        if plain == PLACE:
+            value = bodies.positions[block, np.uint64(component)] - gauges.shifts[g]
+        elif plain == SPEED:
+            value = bodies.means[block * np.uint64(bodies.velocities.shape[1]) + np.uint64(component)]
+        elif plain == TURN:
+            value = bodies.orientations[block, np.uint64(component)]
+        else:
+            value = _mean_of_gauge(number, step, bodies, gauges, like, like_rotation)
+        if value > found[g, HIGHEST]:
+            found[g, HIGHEST], found[g, HIGHEST_AT] = value, step
+        if value < found[g, LOWEST]:
+            found[g, LOWEST], found[g, LOWEST_AT] = value, step
+
+
+@always_inline
+def _tally_gaps(gaps, tally):
+    """The least gap so far: four at a time, as a minimum waits for the one before."""
+    n = gaps.shape[0]
+    a = b = c = d = tally[LEAST_GAP]
+    for i in range(0, n - 3, 4):
+        a, b = min(a, gaps[i]), min(b, gaps[i + 1])
+        c, d = min(c, gaps[i + 2]), min(d, gaps[i + 3])
+    for i in range(n - n % 4, n):
+        a = min(a, gaps[i])
+    tally[LEAST_GAP] = min(min(a, b), min(c, d))
+
+
 def make_shake(
     contact_forces: Callable,
     drift: Callable,
@@ -164,6 +271,7 @@ def make_shake(
         means, drags, pulled, strained = bodies.means, bodies.drags, bodies.pulled, dampers.strained
         dead_loads, inverse_masses, scales = loads.dead, loads.inverse_masses, loads.force_scales
         damp, rate, n_dof = control[DAMP], control[MASS_RATE], velocities.shape[1]
+        gauges, looks = watch.gauges, watch.gauges.tally.shape[0] > 0
         n_moving, n_given = ground.moving.shape[0], ground.velocities.shape[2]
         done = 0
         for step in range(first, first + n_steps):
@@ -207,6 +315,11 @@ def make_shake(
                 velocities, forces, unbalanced, inverse_masses, dampers.masses, shape, bodies.turns, means, pulled,
                 drags, rate, dt, ledger, like_rotation,
             )  # fmt: skip
+            _read_gauges(step, bodies, gauges, like, like_rotation)
+            if looks:
+                _tally_gaps(contacts.gaps, gauges.tally)
+                if damped and met > 0:
+                    gauges.tally[MET] += 1.0
             if step % watch.every == 0:
                 _sample(step, dt, bodies, shape, watch, like_rotation)
                 if linked:

@@ -7,7 +7,8 @@ from typing import Any
 
 from dem_cli.output.record import COLLAPSED, MOVES, ROCKS, STOOD
 
-_KNOWN = {STOOD: STOOD, ROCKS: f"stood, {ROCKS}", MOVES: "still moving at the end: whether it falls is not known"}
+MOVES_WORDS = "still moving at the end: whether it falls is not known, and a larger peak may follow"
+_KNOWN = {STOOD: STOOD, ROCKS: f"stood, {ROCKS}", MOVES: MOVES_WORDS}
 
 
 def ending_words(summary: Mapping[str, Any], digits: int = 4) -> str:

@@ -16,7 +16,7 @@ from dem_cli.output.resume.stages import NOTHING_KEPT, Stages
 if TYPE_CHECKING:
     from dem_cli.model.model import Model
 
-NO_TANGENTS = np.zeros((0, 0))
+NO_TANGENTS, NO_EXTREMES = np.zeros((0, 0)), np.zeros((0, 4))
 NO_OUTLINES, NO_CORNERS, OUTLINE = np.zeros(0, np.int64), np.zeros((0, 3)), ("starts", "corners")
 STATES = ("open", "sticking", "sliding")  # meaning of ContactRecord.state 0, 1, 2
 STAGES = (
@@ -258,6 +258,9 @@ class Samples(NamedTuple):
     times: np.ndarray  # [s], (n,)
     base: np.ndarray  # acceleration, velocity and displacement of the base [m, s], (n, 3, d)
     monitors: np.ndarray  # in the order of the case's [[monitor]] tables, (n, n_monitors)
+    # Highest value, its time [s], lowest, its time of each monitor at any step, (n_monitors, 4); (0, 4): of samples
+    extremes: np.ndarray = NO_EXTREMES
+    coda: bool = False  # whether the motion of the ground, or the time that a case asks for, was over
 
 
 class RunRow(NamedTuple):
@@ -270,7 +273,7 @@ class RunRow(NamedTuple):
     collapsed: bool | None  # None: the run failed
     time: float | None  # of the collapse [s]
     how: str  # what collapsed and how, or why the run failed
-    peaks: tuple[float, ...]  # largest absolute values, in the order of the case's [[monitor]] tables
+    peaks: tuple[float, ...]  # largest absolute values, as the [[monitor]] tables are; nan: it means nothing
 
 
 def distinct(names: Iterable[str]) -> list[str]:

@@ -17,11 +17,12 @@ from dem_cli.output.record import MONITOR_UNITS, Samples
 
 BASE = ("acceleration", "velocity", "displacement")  # as Samples.base
 _AXES = "xyz"
+_EQUAL = 1e-6  # of a peak: what is not larger by more is the same, that of an undamped swing that comes again
 _TEXT = h5py.string_dtype()
 
 
 class Peak(NamedTuple):
-    """The largest values of a monitor: by size, to the positive side and to the negative one."""
+    """The largest values of a monitor in all that was followed: by size, to the positive side, to the negative one."""
 
     peak: float  # the larger of max and min by size, with its sign
     time: float  # of the peak [s]
@@ -29,7 +30,9 @@ class Peak(NamedTuple):
     max_time: float  # [s]
     min: float
     min_time: float  # [s]
-    residual: float  # the last value
+    residual: float  # the last value of the motion
+    during_motion: float  # the peak before the coda
+    during_motion_time: float  # [s]
 
 
 class HistorySeries(NamedTuple):
@@ -64,31 +67,53 @@ class SeriesWriter:
         if len(samples.times):
             self._waiting.append(samples)
             self.n_waiting += len(samples.times)
+        if len(samples.times) or len(samples.extremes):
             self._remember(samples)
 
     def _remember(self, samples: Samples) -> None:
-        if not self.names:
-            return
-        values = np.where(np.isfinite(samples.monitors), samples.monitors, 0.0)  # a run may end in nonsense
-        for i, column in enumerate(values.T):
-            most, least = ((float(column[n]), float(samples.times[n])) for n in (column.argmax(), column.argmin()))
-            if i < len(self._peaks):  # the earlier one of two that are equal
-                before = self._peaks[i]
-                most = most if most[0] > before.max else (before.max, before.max_time)
-                least = least if least[0] < before.min else (before.min, before.min_time)
+        for i, (high, high_time, low, low_time) in enumerate(self._extremes(samples).tolist()):
+            most, least = (high, high_time), (low, low_time)
+            before = self._peaks[i] if i < len(self._peaks) else None
+            if before is not None:  # the earlier one of two that are equal
+                same = _EQUAL * max(before.max, -before.min)
+                most = most if most[0] > before.max + same else (before.max, before.max_time)
+                least = least if least[0] < before.min - same else (before.min, before.min_time)
             largest = least if -least[0] > most[0] or (-least[0] == most[0] and least[1] < most[1]) else most
-            self._peaks[i : i + 1] = [Peak(*largest, *most, *least, float(samples.monitors[-1, i]))]
+            last, during = float(samples.monitors[-1, i]) if len(samples.monitors) else 0.0, largest
+            if before is not None and (samples.coda or not len(samples.monitors)):
+                last = before.residual
+            if before is not None and samples.coda:
+                during = before.during_motion, before.during_motion_time
+            self._peaks[i : i + 1] = [Peak(*largest, *most, *least, last, *during)]
 
-    def peaks(self) -> dict[str, dict[str, float | str]]:
-        """Extremes with their times, the last value and the unit of each monitor, by name."""
-        found = zip(self.names, self.quantities, self._peaks)
-        return {name: {**peak._asdict(), "unit": MONITOR_UNITS[quantity]} for name, quantity, peak in found}
+    def _extremes(self, samples: Samples) -> np.ndarray:
+        """As Samples.extremes; those of samples where nothing else is known."""
+        if len(samples.extremes) or not self.names:
+            return samples.extremes
+        values = np.where(np.isfinite(samples.monitors), samples.monitors, 0.0)  # a run may end in nonsense
+        high, low, each = values.argmax(axis=0), values.argmin(axis=0), np.arange(values.shape[1])
+        return np.column_stack([values[high, each], samples.times[high], values[low, each], samples.times[low]])
+
+    def peaks(self, impacts: bool = False) -> dict[str, dict[str, float | str | None]]:
+        """Extremes with their times, the last value and the unit of each monitor, by name.
+
+        impacts: whether blocks hit each other: of accelerations the last value alone means something then.
+        """
+        found: dict[str, dict[str, float | str | None]] = {}
+        for name, quantity, peak in zip(self.names, self.quantities, self._peaks):
+            known: dict[str, float | str | None] = dict(peak._asdict())
+            if impacts and quantity.endswith("acceleration"):
+                known = dict.fromkeys(known) | {"residual": peak.residual}
+            found[name] = known | {"unit": MONITOR_UNITS[quantity]}
+        return found
 
     def flush(self) -> None:
         """Hand what was kept to the file."""
         waiting, self._waiting, self.n_waiting = self._waiting, [], 0
         if waiting:
-            times, base, monitors = (np.concatenate(parts) for parts in zip(*waiting, strict=True))
+            times, base, monitors = (
+                np.concatenate([getattr(one, name) for one in waiting]) for name in ("times", "base", "monitors")
+            )
             for i, name in enumerate(BASE):
                 self._columns.append(f"base_{name}", base[:, i])
             if self.names:

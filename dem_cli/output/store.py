@@ -156,7 +156,11 @@ class ResultWriter:
 
     def measured(self, found: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
         """What a summary says of the monitors: `peaks` of a time history, else `monitors` in the last equilibrium."""
-        kept = {"peaks": self._series.peaks()} if self._series else {"monitors": self._held.values(found)}
+        kept = (
+            {"peaks": self._series.peaks(bool(found.get("impacts")))}
+            if self._series
+            else {"monitors": self._held.values(found)}
+        )
         return {key: values for key, values in kept.items() if values}
 
     def close(self, summary: Mapping[str, Any]) -> None:

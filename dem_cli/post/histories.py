@@ -23,9 +23,9 @@ def draw_histories(results: Results, path: Path) -> None:
     """Draw the base acceleration and every monitor against time; the collapse is marked."""
     series = results.series
     assert series is not None
-    collapse = results.summary.get("collapse_time")
+    collapse, ends = results.summary.get("collapse_time"), results.summary.get("duration")
     if collapse is not None and collapse > series.time[-1]:
-        collapse = None  # after the motion, in the coda: nothing of it is drawn
+        collapse = None  # after the motion, of earlier versions: nothing of it is drawn
     panels = {quantity: of_quantity(series, quantity) for quantity in MONITOR_UNITS}
     panels = {quantity: lines for quantity, lines in panels.items() if lines}
     moved = [name for i, name in enumerate(BASE) if (series.base[:, i] != 0.0).any()]
@@ -37,6 +37,8 @@ def draw_histories(results: Results, path: Path) -> None:
         for axis, (quantity, lines) in zip(axes[bool(moved) :], panels.items()):
             _draw_panel(axis, series.time, quantity, lines, collapse)
         for axis in axes:
+            if ends is not None and ends < series.time[-1]:
+                axis.axvline(ends, color=style.GREY, lw=0.9, ls=(0, (1, 2)))  # what follows is the coda
             if collapse is not None:
                 axis.axvline(collapse, color=style.COLLAPSE, lw=1.1, ls=(0, (4, 2)))
         if collapse is not None:

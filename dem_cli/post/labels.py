@@ -73,7 +73,8 @@ _JOINTS = {  # the largest of all joints
 _PARTS = {  # last words of a path inside a summary
     "residual": "last value", "time": "time of the peak", "value": "", "load": "load λ at the last value",
     "max": "largest value", "min": "smallest value", "max_time": "time of the largest value",
-    "min_time": "time of the smallest value", "peak": "peak",
+    "min_time": "time of the smallest value", "peak": "peak", "during_motion": "peak during the motion",
+    "during_motion_time": "time of the peak during the motion",
 }  # fmt: skip
 _KEYS = {"density": "density", "thickness": "thickness"}  # where the meaning only paraphrases the word
 _MOST_WORDS = 46  # letters of a meaning that still fits an axis
@@ -89,7 +90,7 @@ def of_output(name: str, units: Mapping[str, Any]) -> Quantity:
     if match := re.fullmatch(r"(peaks|monitors)\.(.+)\.(\w+)", name):
         _, monitor, part = match.groups()
         own = str(units.get(f"{match[1]}.{monitor}.unit", ""))
-        unit = {"time": "s", "max_time": "s", "min_time": "s", "load": "", "unit": ""}.get(part, own)
+        unit = "s" if part.endswith("time") else "" if part in ("load", "unit") else own
         said = _PARTS.get(part, part)
         return Quantity(f"{monitor}, {said}" if said else monitor, unit)
     return Quantity(name.replace("_", " ").replace(".", ", "))

@@ -89,7 +89,11 @@ def _shaken(summary: Mapping[str, Any]) -> tuple[str, str, str]:
     if not how:
         return _status(summary)
     peaks = summary.get("peaks") or {}
-    more = [f"{name}: peak {_value(found['peak'], found['unit'])}" for name, found in list(peaks.items())[:1]]
+    more = [
+        f"{name}: peak {_value(found['peak'], found['unit'])}"
+        for name, found in list(peaks.items())[:1]
+        if found["peak"] is not None
+    ]
     ground = summary.get("peak_ground_acceleration")
     more += [] if ground is None else [f"peak ground acceleration {ground:.3g} m/s²"]
     return ("result", how, ", ".join(more))

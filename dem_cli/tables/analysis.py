@@ -213,14 +213,16 @@ class ShakingAnalysis(CaseModel):
     dropped: float | None = Field(
         default=None,
         gt=0.0,
-        description="a block that sank by so much has collapsed [m]; default: its least width",
+        description="a block that sank by so much has collapsed [m]; default: its least width, or 3 % of it where it "
+        "lost its support",
         examples=[0.3],
     )
     max_steps: int = Field(default=200_000_000, ge=1000, description="give up rather than take so many steps")
-    coda: NonNegative = Field(
-        default=5.0,
+    coda: NonNegative | None = Field(
+        default=None,
         description="how long a structure that still moves after the motion is followed at most, to see whether it "
-        "falls [s]",
+        "falls and how far it goes [s]; default: 5, or 20 √(H/2g) of a structure of height H where that is more",
+        examples=[10.0],
     )
     repeats: int = Field(
         default=0, ge=0, le=10_000, description="runs of slightly different structures beside it", examples=[20]

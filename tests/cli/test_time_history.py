@@ -86,10 +86,12 @@ def test_the_answer(rocked):
     assert list(summary)[:12] == ["title", "kind", "version", "status", "collapsed", "collapse_time", "ending",
                                   "at_rest", "followed", "contradictions", "peaks", "joint_state"]  # fmt: skip
     assert list(summary["peaks"]) == NAMES
-    turn = read(folder).series.monitors["turn"]
-    peak = summary["peaks"]["turn"]
-    assert peak["peak"] == turn[np.abs(turn).argmax()]
-    assert peak["residual"] == turn[-1]
+    series = read(folder).series
+    turn, peak = series.monitors["turn"], summary["peaks"]["turn"]
+    assert abs(peak["peak"]) >= np.abs(turn).max() - 1e-15  # of all steps
+    assert peak["peak"] == pytest.approx(turn[np.abs(turn).argmax()], rel=1e-3)
+    assert peak["residual"] == turn[series.time < summary["duration"]][-1]
+    assert series.time[-1] == pytest.approx(summary["duration"] + summary["followed"], abs=0.011)
     assert "  result         stood, still rocking\n" in text
     assert f", {peak['residual']:.3g} rad at the end, still moving\n" in text
     assert f"  peak           turn: {peak['peak']:.3g} rad at {peak['time']:.4g} s, " in text
@@ -154,7 +156,7 @@ def test_stopped_half_way(tmp_path, error, status, code):
         for row in shaking_rows(frames):
             if row.time < 2.5:
                 observer.row(row._replace(monitors=(0.0,)))
-        observer.samples(type(whole)(*(column[:500] for column in whole)))
+        observer.samples(type(whole)(*(column[:500] for column in whole[:3])))
         observer.frame(frames[0])
         raise error
 
@@ -195,7 +197,10 @@ def test_a_peak_has_the_spread_of_its_repeats_beside_it(tmp_path):
     repeats = {"runs": 6, "collapsed": 1, "still_moving": 2, "peaks": {"roof": spread}}
     summary = shaking_summary() | {"collapsed": None, "ending": "still moving", "at_rest": False}
     text = console.answer(summary | {"peaks": {"roof": peak}, "repeats": repeats}, tmp_path, [])
-    assert "  result         still moving at the end: whether it falls is not known\n" in text
+    assert (
+        "  result         still moving at the end: whether it falls is not known, and a larger peak may follow\n"
+        in text
+    )
     assert "roof: 628 mm at 8.25 s, 350 mm at the end, still moving\n" in text
     assert "of its repeats 149 mm to 259 mm\n" in text
     assert "1 of 6 perturbed structures collapsed, 2 still moved in the end\n" in text

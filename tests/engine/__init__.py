@@ -59,8 +59,9 @@ class Records(Observer):
 
     @property
     def history(self) -> Samples:
-        """The whole time history."""
-        return Samples(*(np.concatenate(parts) for parts in zip(*self.stretches, strict=True)))
+        """The whole time history, without the coda."""
+        motion = [samples for samples in self.stretches if not samples.coda]
+        return Samples(*(np.concatenate(parts) for parts in zip(*(samples[:3] for samples in motion), strict=True)))
 
 
 def rectangle(left: float, bottom: float, right: float, top: float) -> list[list[float]]:

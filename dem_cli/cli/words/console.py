@@ -210,8 +210,8 @@ def _shaking_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(("fell", f"{fallen['count']:,}: {names}" + (", …" if fallen["count"] > MOST_NAMES else "")))
     peaks = summary.get("peaks") or {}
     for name, found in list(peaks.items())[:MOST_PEAKS]:
-        peak, residual = (_measure(found[key], found["unit"]) for key in ("peak", "residual"))
-        rows.append(("peak", f"{name}: {peak} at {found['time']:.4g} s, {residual} {last_words(summary)}"))
+        residual = _measure(found["residual"], found["unit"])
+        rows.append(("peak", f"{name}: {_peak_words(found)}, {residual} {last_words(summary)}"))
         spread = ((summary.get("repeats") or {}).get("peaks") or {}).get(name)
         if spread:
             low, high = (_measure(spread[key], spread["unit"]) for key in ("min", "max"))
@@ -223,6 +223,17 @@ def _shaking_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         listed = sorted(shares.items(), key=lambda item: -item[1])
         rows.append(("energy went to", ", ".join(f"{name.replace('_', ' ')} {100 * s:.3g} %" for name, s in listed)))
     return rows
+
+
+def _peak_words(found: Mapping[str, Any]) -> str:
+    """A peak and its time; that of the motion beside it, where it came after the motion."""
+    if found["peak"] is None:
+        return "no peak, blocks hit each other"
+    said = f"{_measure(found['peak'], found['unit'])} at {found['time']:.4g} s"
+    during, time = found.get("during_motion"), found.get("during_motion_time", found["time"])
+    if during is None or time == found["time"]:
+        return said
+    return f"{said} ({_measure(during, found['unit'])} at {time:.4g} s during the motion)"
 
 
 def _measure(value: float | None, unit: str) -> str:

@@ -38,8 +38,10 @@ class FoundPeak(SummaryTable):
 
     peak: Maybe
     residual: Maybe
-    time: Number
+    time: Maybe
     unit: str
+    during_motion: Maybe = None
+    during_motion_time: Maybe = None
 
 
 class FoundMotion(SummaryTable):
@@ -330,6 +332,7 @@ class RunSummary(SummaryTable):
     monitors: dict[str, FoundValue] | None = None
     repeats: FoundRepeats | None = None
     energy_shares: dict[str, Number] | None = None
+    impacts: Count | None = None
     peak_ground_acceleration: Maybe = None
     median: Maybe = None
     median_between: Pair | None = None

@@ -150,9 +150,8 @@ def test_words():
         "collapsed at 2.481 s, 1.23 s after the motion")  # fmt: skip
     assert ending_words({"collapsed": True, "collapse_time": 2.481}) == "collapsed at 2.481 s"
     assert ending_words({"collapsed": False, "ending": ROCKS}) == "stood, still rocking"
-    assert (
-        ending_words({"collapsed": None, "ending": MOVES}) == "still moving at the end: whether it falls is not known"
-    )
+    assert ending_words({"collapsed": None, "ending": MOVES}) == (
+        "still moving at the end: whether it falls is not known, and a larger peak may follow")  # fmt: skip
     assert ending_words({"collapsed": False}) == "stood"  # of earlier versions
     said = {"collapsed": False, "ending": STOOD, "contradictions": ["on softer joints it collapses"]}
     assert ending_words(said) == "stood; on softer joints it collapses"

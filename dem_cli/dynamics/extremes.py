@@ -1,0 +1,95 @@
+"""Extremes of the monitors of a time history over all that was followed, from stretch to stretch."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dem_cli.engine.measures import largest_displacement
+from dem_cli.kernels import records as slot
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from dem_cli.case.schema import Monitor
+    from dem_cli.dynamics.ground import GroundMotion
+    from dem_cli.engine.dynamic import DynamicSimulation, Looker
+    from dem_cli.engine.monitors import Monitors
+
+
+class MotionStretch(NamedTuple):
+    """What a stretch of motion showed."""
+
+    times: np.ndarray  # of the samples [s], (n,)
+    base: np.ndarray  # acceleration, velocity and displacement of the base there [m, s], (n, 3, d)
+    values: np.ndarray  # of the monitors there, (n, n_monitors)
+    extremes: np.ndarray  # as Monitors.extremes, (n_monitors, 4)
+    overlap: float  # the largest of a contact point at any step [m]
+    impacts: int  # steps in which contact points met, where joints have dashpots and a block has moved visibly
+
+
+def without_meaning(monitors: Sequence[Monitor], impacts: int) -> list[int]:
+    """Numbers of monitors whose peaks mean nothing: accelerations where blocks hit each other.
+
+    An impact of stiff joints lasts as long as these are soft, and its acceleration is what that makes it.
+    """
+    return [i for i, monitor in enumerate(monitors) if impacts and monitor.quantity == "acceleration"]
+
+
+class Extremes:
+    """Largest absolute value of each monitor, and the largest overlap, of all stretches so far."""
+
+    LASTING = frozenset[str]()
+
+    def __init__(self, count: int) -> None:
+        self.values = np.zeros(count)
+        self.overlap, self.impacts = 0.0, 0
+
+    def see(self, stretch: MotionStretch) -> None:
+        """One stretch more."""
+        ends = np.abs(stretch.extremes[:, [slot.HIGHEST, slot.LOWEST]])
+        self.values = np.maximum(self.values, np.where(np.isfinite(ends), ends, 0.0).max(axis=1, initial=0.0))
+        self.go_on(stretch)
+
+    def go_on(self, stretch: MotionStretch) -> None:
+        """One stretch more, whose values do not count: that of a fall."""
+        self.overlap, self.impacts = max(self.overlap, stretch.overlap), self.impacts + stretch.impacts
+
+
+def shaken_on(
+    sim: DynamicSimulation,
+    ground: GroundMotion,
+    monitors: Monitors,
+    n_steps: int,
+    every: int,
+    looker: Looker | None = None,
+    with_base: bool = True,
+) -> MotionStretch:
+    """n_steps of motion: samples every so many steps since the start of the run, extremes of every step.
+
+    with_base: whether the motion of the base at the samples is wanted; else it is left at zero.
+    """
+    dt = sim.dt
+    done = round(sim.time / dt)
+    since = done % every  # steps since the last sample was due, which the stretch begins with
+    n_samples, start = -(-(since + n_steps) // every), (done - since) * dt
+    of_steps = np.zeros((0, 2, sim.model.dimension))
+    if monitors.absolute:
+        of_steps = np.ascontiguousarray(ground.of_base(start + dt * np.arange(since + n_steps))[:, [2, 1]])
+    gauges = monitors.gauges(of_steps)
+    watch = sim.watch(monitors.watched, every, n_samples, gauges)
+    new = 1 if since else 0  # the first sample of a stretch that begins between two is none
+    first, n = done - since + every * new, max(n_samples - new, 0)
+    if with_base:
+        times, base = ground.sampled(first, n, every, dt)
+    else:
+        times, base = dt * (first + every * np.arange(n)), np.zeros((n, 3, sim.model.dimension))
+    sim.shake(ground.stretch(start, since + n_steps, dt), n_steps, watch, since, looker)
+    values = np.zeros((0, len(monitors.tables)))
+    if n_samples > new:
+        values = monitors.series(watch.samples[new:], base, watch.links[new:])
+    overlap = max(0.0, -float(gauges.tally[slot.LEAST_GAP]))
+    extremes = monitors.extremes(gauges, times, values, start, dt)
+    moved = largest_displacement(sim) >= sim.settings.history.noticeable * sim.smallest
+    return MotionStretch(times, base, values, extremes, overlap, int(gauges.tally[slot.MET]) if moved else 0)
