@@ -54,9 +54,9 @@ def checked(
     factor, said = f"on joints {rocking.softer:g} times as soft", ""
     if run is None or not run.ending:
         job.skipped.append(f"a second run {factor}: {'it does not stand' if run is None else run.how}")
-    elif run.collapsed is None:
+    elif run.collapsed is None and collapsed is not None:
         said = f"{factor} it is {run.how}: whether it falls there is not known"
-    elif run.collapsed != bool(collapsed):
+    elif run.collapsed is not None and run.collapsed != bool(collapsed):
         job.contradictions.append(f"on softer joints it {'collapses' if run.collapsed else 'stands'}")
         said = f"{factor} the structure {'collapses' if run.collapsed else 'survives'}: {WHY}"
     elif not collapsed:

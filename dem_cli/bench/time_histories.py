@@ -38,8 +38,9 @@ class FirstMonitor(Observer):
         self.parts: list[Samples] = []
 
     def samples(self, samples: Samples) -> None:
-        """Keep them."""
-        self.parts.append(samples)
+        """Keep them; not those after the motion."""
+        if not samples.coda:
+            self.parts.append(samples)
 
     @property
     def times(self) -> np.ndarray:

@@ -22,7 +22,8 @@ class RunKeeper(Observer):
         self.rows.append(row)
 
     def samples(self, samples: Samples) -> None:
-        self.stretches.append(samples)
+        if not samples.coda:
+            self.stretches.append(samples)
 
     @property
     def times(self) -> np.ndarray:
