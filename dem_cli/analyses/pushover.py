@@ -206,9 +206,8 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
     search, resolution = load_search.answer, job.case.analysis.resolution
     if not search.found or search.limits is None or at_the_bound(search, resolution) or search.limits.too_large:
         return
-    if search.start["kind"] == IMPLICIT:  # a history of small steps under load itself
-        if search.limits.largest <= job.settings.warm_start.beside_implicit:
-            _ = search.limits.path
+    implicit = search.start["kind"] == IMPLICIT
+    if implicit and search.limits.largest > job.settings.warm_start.beside_implicit:
         return
     path = search.limits.path
     if path is None:
@@ -216,9 +215,11 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
     even = path.load is not None and path.finished and path.rest is None and path.fall <= resolution
     if even and load_range(search, resolution) is None:
         return
+    if implicit and load_search.run_again_in_small_implicit_steps():
+        return
     if search.limits.largest > job.settings.warm_start.repeated:
         job.skipped.append("the load again in small steps: too many blocks")
-    elif search.carried > job.settings.load_search.least * search.scale and search.start["kind"] == GRAVITY:
+    elif search.carried > job.settings.load_search.least * search.scale and search.start["kind"] in (GRAVITY, IMPLICIT):
         load_search.run_again_in_small_steps(2.0 ** ceil(log2(search.carried)))
         if search.earlier is None:
             job.skipped.append("the load again in small steps: not finished; it is that of larger steps")

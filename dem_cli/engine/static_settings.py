@@ -118,6 +118,7 @@ class ImplicitHistorySettings:
     narrow: float = 0.5  # of the resolution: width of the bracket, so that a load beyond it fails soon
     shares: tuple[float, ...] = (0.5, 0.8, 0.9)  # of the bound: first loads
     growth: float = 1.02  # of the next loads, until one fails
+    small: float = 1.005  # the same in small steps
     beyond: float = 2e-4  # of the bound, above which no load is tried
     beside: float = 0.4  # resolutions: how far from a plateau of the resistance the next loads are
     under_dead_loads: int = 2  # of the attempts of the path to stand under dead loads

@@ -83,7 +83,7 @@ class LoadSearch:
         Raises SolverError where the live load moves nothing, or where the budget ends.
         """
         sim, answer, settings = self.sim, self.answer, self.settings
-        self.at_rest = sim.save()
+        self.at_rest, self.first_start = sim.save(), dict(answer.start)
         answer.low, answer.held, answer.settled = 0.0, self.at_rest, measures.largest_displacement(sim)
         if answer.bound is not None:
             least = self.resolution * settings.least
@@ -121,20 +121,34 @@ class LoadSearch:
         )  # fmt: skip
         if self._enough(trials):
             return
+
+        def raised() -> bool:
+            self._raise_load(trials)
+            return not self.answer.wide or (self.answer.found and not self._enough(trials))
+
+        if self._again(raised):
+            self.answer.start = self.first_start
+
+    def run_again_in_small_implicit_steps(self) -> bool:
+        """The bracket again by an implicit history in small steps; False: it was not found, and all is as before."""
+        return self._again(lambda: self._ends_where_the_history_does(small=True))
+
+    def _again(self, search: Callable[[], bool]) -> bool:
+        """Another search of the bracket from the dead loads; where it does not end the answer is the one before."""
         known, rows = replace(self.answer), [*self.track.kept]
         self.track.kept[:] = rows[:1]
         self.answer.begin_again(self.at_rest)
         finished = False
         try:
             with suppress(SolverError):
-                self._raise_load(trials)
-                finished = not self.answer.wide or (self.answer.found and not self._enough(trials))
+                finished = search()
         finally:
             if not finished:
                 vars(self.answer).update(vars(known))
                 self.track.kept[:] = rows
                 if known.failed_state is not None:
                     self.sim.restore(known.failed_state)
+        return finished
 
     def _trials(self, levels: list[float], step: float, longest: float = np.inf) -> TrialLoads:
         """Loads to try from what is carried now."""
@@ -176,25 +190,35 @@ class LoadSearch:
         self.plateau = load
         return load, True
 
-    def _ends_where_the_history_does(self) -> bool:
-        """Whether an implicit history leads to a load that the explicit solver holds; it shows the failure above it."""
-        answer, limits, settings, scale = self.answer, self.answer.limits, self.settings, self.sim.live_scale
+    def _ends_where_the_history_does(self, small: bool = False) -> bool:
+        """Whether the explicit solver holds the load that an implicit history held last, and shows failure above it.
+
+        Else all is as it was: what rests beyond a failure has another history. small: in small steps of the load.
+        """
+        answer, limits, scale, resolution = self.answer, self.answer.limits, self.sim.live_scale, self.resolution
         if limits is None or answer.bound is None or not limits.slides:
             return False
         plane = self.sim.model.dimension == 2  # in space it takes as long as the path, and fails more often
         if not plane or limits.largest < self.sim.settings.implicit_history.blocks or limits.too_large:
             return False
-        report = dict(answer.start)
-        starts, rows, onset = starts_by_history(limits, report), len(self.track.kept), answer.onset
+        known, rows, report = replace(answer), len(self.track.kept), dict(answer.start)
+        starts = starts_by_history(limits, report, small)
         for start in starts[:-1]:
             self._pass_by(start)
-        if not starts or not self._holds(starts[-1], settings.below * self.resolution):
-            answer.onset = onset
-            del self.track.kept[rows:]
-            return False
-        answer.start, self.plateau = report, starts[-1].load / scale
-        self._raise_load(self._trials([], settings.one_step * self.resolution * answer.carried / scale))
-        return True
+        if starts and self._holds(starts[-1], self.settings.below * resolution):
+            self.plateau, low = starts[-1].load / scale, answer.carried / scale
+            load = min((1.0 + self.settings.one_step * resolution) * low, self.impossible)
+            verdict = self._settle(load)
+            if verdict.state == "failure":
+                answer.start, answer.status, answer.found = report, OK, True
+                self._note_failure(load, verdict)
+                self.track.keep("collapse")
+                return True
+        passes, self.plateau = answer.passes, np.inf
+        vars(answer).update(vars(known) | {"passes": passes, "start": dict(self.first_start)})
+        del self.track.kept[rows:]
+        self.sim.restore(self.at_rest)
+        return False
 
     def _ends_where_the_path_does(self) -> bool:
         """Whether the path of a large structure leads to a load that the explicit solver holds.
@@ -328,9 +352,7 @@ class LoadSearch:
                     self.plateau = np.inf  # it was none, but a rest on the way
             elif verdict.state == "failure":
                 trials.fails(load, for_certain=load >= self.impossible)
-                answer.high, answer.failing = load * answer.scale, verdict
-                answer.failed_from, answer.failed_state = answer.standing, self.sim.save()
-                answer.impossible = load >= self.impossible
+                self._note_failure(load, verdict)
             else:
                 trials.leaves(load)
             answer.undecided = [other * answer.scale for other in trials.undecided]
@@ -346,6 +368,12 @@ class LoadSearch:
         if answer.failed_state is not None:
             self.sim.restore(answer.failed_state)
             self.track.keep("collapse")
+
+    def _note_failure(self, load: float, verdict: Verdict) -> None:
+        answer = self.answer
+        answer.high, answer.failing = load * answer.scale, verdict
+        answer.failed_from, answer.failed_state = answer.standing, self.sim.save()
+        answer.impossible = load >= self.impossible
 
     def _enough(self, trials: TrialLoads) -> bool:
         """Whether a bracket that is known cost so much, or would until it is any narrower, that it stays as it is."""

@@ -100,40 +100,53 @@ class ImplicitHistory:
         self._reached = 0.0  # displacement at `low`
         self._origin = self._elastic = self._first_step = 0.0
 
-    def search(self, bound: float, resolution: float) -> FoundHistory | None:
-        """The load that fails, below a bound, to a relative width; None where it was not found."""
-        if not (self._stand() and self._close_in(bound, resolution)) or self.high is None or not self.held:
+    def search(self, bound: float, resolution: float, small: bool = False) -> FoundHistory | None:
+        """The load that fails, below a bound, to a relative width; None where it was not found.
+
+        small: in small steps of the load, which meet what larger ones step over.
+        """
+        if not (self._stand() and self._close_in(bound, resolution, small)) or self.high is None or not self.held:
             return None
         return FoundHistory(self.high, self.held, self.levels, self.curve)
 
-    def _close_in(self, bound: float, resolution: float) -> bool:
-        """Load after load, until the bracket is as narrow; False where one of them stays undecided."""
-        settings, plateau, tries = self.settings, None, 0
-        shares = list(settings.shares)
-        while not self.stop():
-            low, high = self.low, self.high
-            if high is None and low >= (1.0 - resolution) * bound:
-                self.high = high = bound
-            if high is not None and high - low <= resolution * low:
+    def _close_in(self, bound: float, resolution: float, small: bool) -> bool:
+        """Load after load, until the bracket is as narrow; False where one of them stays undecided.
+
+        What failed after a jump may hold when it is reached in steps: from the last load that held these go on.
+        """
+        settings, loads = self.settings, self.settings.shares[:1] if small else self.settings.shares
+        jumps = [share * bound for share in loads]
+        while jumps and self._tried(jumps.pop(0)) == HOLDS:
+            pass
+        if self.levels[-1].verdict == UNDECIDED:
+            return False
+        self.high, growth = None, settings.small if small else settings.growth
+        while self.high is None:
+            if self.low >= (1.0 - resolution) * bound:
+                self.high = bound
                 return True
-            below, above = ((1.0 + side * settings.beside * resolution) * (plateau or 0.0) for side in (-1.0, 1.0))
-            if high is None and shares:
-                load = shares.pop(0) * bound
-            elif high is None:
-                load = min(settings.growth * low, 0.5 * (low + (1.0 + settings.beyond) * bound))
-            elif low < below < high:
-                load = below
-            elif low < above < high and tries < 2:
-                load, tries = above, tries + 1
-            else:
-                load = 0.5 * (low + high)
-            level = self._hold(load)
-            self.levels.append(level)
-            if level.verdict == UNDECIDED:
+            load = min(growth * self.low, 0.5 * (self.low + (1.0 + settings.beyond) * bound))
+            if self.stop() or not self.low or self._tried(load) == UNDECIDED:
                 return False
-            if level.verdict == FAILS:
-                plateau, tries = level.resisted, 0
-        return False
+        return self._narrowed(resolution)
+
+    def _narrowed(self, resolution: float) -> bool:
+        """Loads between the last that held and the one that failed, beside the plateau of the resistance."""
+        beside, tries = self.settings.beside * resolution, 0
+        while self.high is not None and self.high - self.low > resolution * self.low:
+            plateau = next(level.resisted for level in reversed(self.levels) if level.verdict == FAILS)
+            tries = tries + 1 if self.levels[-1].verdict == HOLDS else 0
+            wanted = ((1.0 - beside) * plateau, (1.0 + beside) * plateau) if tries <= 2 else ()
+            middle = 0.5 * (self.low + self.high)
+            load = next((load for load in wanted if self.low < load < self.high), middle)
+            if self.stop() or self._tried(load) == UNDECIDED:
+                return False
+        return True
+
+    def _tried(self, load: float) -> str:
+        """The verdict on a load."""
+        self.levels.append(self._hold(load))
+        return self.levels[-1].verdict
 
     def _stand(self) -> bool:
         """Equilibrium under dead loads; False: not found."""

@@ -146,13 +146,22 @@ class RigidLimits:
         """The implicit history under load from gravity to failure; None where it does not apply, or was not found."""
         if self._matrices is None or self.sim.links or self.bound is None:
             return None
+        return self._timed_history(small=False)
+
+    @cached_property
+    def history_in_small_steps(self) -> FoundHistory | None:
+        """The same in small steps of the load."""
+        return None if self.history is None else self._timed_history(small=True)
+
+    def _timed_history(self, small: bool) -> FoundHistory | None:
+        assert self._matrices is not None
         begun = time.perf_counter()
-        found = self._followed(*self._matrices)
+        found = self._followed(*self._matrices, small)
         self.seconds["history"] = time.perf_counter() - begun
         return found
 
     @stage
-    def _followed(self, structure: Structure, friction: np.ndarray) -> FoundHistory | None:
+    def _followed(self, structure: Structure, friction: np.ndarray, small: bool) -> FoundHistory | None:
         from dem_cli.limit.elastic import Elastic
         from dem_cli.statics.implicit_history import ImplicitHistory
 
@@ -164,7 +173,7 @@ class RigidLimits:
             problem, settings, lambda: problem.factorisations > most,
             lambda load, _: clock.progress("holding loads in implicit steps", load, 0.0, None),
         )  # fmt: skip
-        return history.search(bound, settings.narrow * self.job.case.analysis.resolution)
+        return history.search(bound, settings.narrow * self.job.case.analysis.resolution, small)
 
     @cached_property
     def largest(self) -> int:

@@ -107,12 +107,12 @@ def start_by_path(limits: RigidLimits, report: dict[str, Any]) -> WarmStart | No
     return WarmStart(PATH, path.load, normal, shear, gaps, displacements, work, path.flat(warm_start.at_the_end))
 
 
-def starts_by_history(limits: RigidLimits, report: dict[str, Any]) -> list[WarmStart]:
+def starts_by_history(limits: RigidLimits, report: dict[str, Any], small: bool = False) -> list[WarmStart]:
     """The equilibria of an implicit history from gravity, upwards; none where it did not come to failure.
 
-    What is said of it goes to `report`.
+    small: in small steps of the load. What is said of it goes to `report`.
     """
-    found = limits.history
+    found = limits.history_in_small_steps if small else limits.history
     if found is None:
         return []
     report |= {"kind": IMPLICIT, **found.summary(), "seconds": limits.seconds["history"]}

@@ -32,7 +32,7 @@ def test_loads_reached_from_gravity(name):
     summary = solve(HISTORIES / f"{name}.toml")[0]
     low, high = summary["failure_load_bracket"]
     assert summary["status"] == "ok"
-    assert summary["start"]["kind"] == ("implicit history" if name == "wall10" else "gravity")
+    assert summary["start"]["kind"] == "gravity"
     assert low <= failed * (1.0 + DIFFER)
     assert high >= held * (1.0 - DIFFER)
     assert summary["limit_analysis"]["associated"] == pytest.approx(associated, rel=1e-4)
