@@ -53,7 +53,7 @@ class HeldState(NamedTuple):
     work: float  # of the live loads until then [J]
 
 
-class FoundHistory(NamedTuple):
+class LoadHistory(NamedTuple):
     """An implicit history from gravity to the lowest load that failed."""
 
     high: float  # that load, a multiplier as users know it
@@ -100,14 +100,14 @@ class ImplicitHistory:
         self._reached = 0.0  # displacement at `low`
         self._origin = self._elastic = self._first_step = 0.0
 
-    def search(self, bound: float, resolution: float, small: bool = False) -> FoundHistory | None:
+    def search(self, bound: float, resolution: float, small: bool = False) -> LoadHistory | None:
         """The load that fails, below a bound, to a relative width; None where it was not found.
 
         small: in small steps of the load, which meet what larger ones step over.
         """
         if not (self._stand() and self._close_in(bound, resolution, small)) or self.high is None or not self.held:
             return None
-        return FoundHistory(self.high, self.held, self.levels, self.curve)
+        return LoadHistory(self.high, self.held, self.levels, self.curve)
 
     def _close_in(self, bound: float, resolution: float, small: bool) -> bool:
         """Load after load, until the bracket is as narrow; False where one of them stays undecided.

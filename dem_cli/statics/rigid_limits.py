@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from dem_cli.limit.associated import LimitLoad
     from dem_cli.limit.matrices import Structure
     from dem_cli.limit.path import Path
-    from dem_cli.statics.implicit_history import FoundHistory
+    from dem_cli.statics.implicit_history import LoadHistory
 
 
 class RigidLimits:
@@ -142,18 +142,18 @@ class RigidLimits:
         )  # fmt: skip
 
     @cached_property
-    def history(self) -> FoundHistory | None:
+    def history(self) -> LoadHistory | None:
         """The implicit history under load from gravity to failure; None where it does not apply, or was not found."""
         if self._matrices is None or self.sim.links or self.bound is None:
             return None
         return self._timed_history(small=False)
 
     @cached_property
-    def history_in_small_steps(self) -> FoundHistory | None:
+    def history_in_small_steps(self) -> LoadHistory | None:
         """The same in small steps of the load."""
         return None if self.history is None else self._timed_history(small=True)
 
-    def _timed_history(self, small: bool) -> FoundHistory | None:
+    def _timed_history(self, small: bool) -> LoadHistory | None:
         assert self._matrices is not None
         begun = time.perf_counter()
         found = self._followed(*self._matrices, small)
@@ -161,7 +161,7 @@ class RigidLimits:
         return found
 
     @stage
-    def _followed(self, structure: Structure, friction: np.ndarray, small: bool) -> FoundHistory | None:
+    def _followed(self, structure: Structure, friction: np.ndarray, small: bool) -> LoadHistory | None:
         from dem_cli.limit.elastic import Elastic
         from dem_cli.statics.implicit_history import ImplicitHistory
 
