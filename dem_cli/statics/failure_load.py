@@ -5,6 +5,9 @@ impossible needs no proof by motion. Where a creep comes close to that bound, it
 path is, a second history from gravity: where its load grows no more, failure shows after a short motion. Where the two
 differ, the load is raised once more in small steps.
 
+In the plane structures of some size go from gravity to failure in implicit steps instead (statics/implicit_history.py):
+the explicit solver holds their last load and shows the failure above it, or all is done as above.
+
 The creep: equilibrium exists at every prescribed displacement, so nothing has to be guessed for it. The live load is
 replaced by a prescribed rate of its own displacement q·u, and its multiplier is found as a reaction. The rate is halved
 several times and then set to zero. A joint that slides back and forth on that way may have lost strength; where the

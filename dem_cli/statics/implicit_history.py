@@ -192,8 +192,8 @@ class ImplicitHistory:
         problem, settings, state = self.problem, self.settings, self.state
         assert state is not None
         step, tau, last, steps = self._first_step, settings.tau, None, 0
-        begun, far = self._reached, max(settings.far * self._reached, settings.far_per_load * load)
-        reached, failed, in_turn, past = begun, 0, 0, list[Resisted]()
+        reached, failed, in_turn, past = self._reached, 0, 0, list[Resisted]()
+        far = max(settings.far * reached, settings.far_per_load * load)
         while steps < settings.most_steps and not self.stop():
             steps += 1
             new = self._step(state, load / problem.live_scale, step, tau, 0.0 if last is None else step / last)
