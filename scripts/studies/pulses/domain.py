@@ -74,13 +74,13 @@ class Shaker:
         self.runs, self.seconds = 0, 0.0
 
     def falls(self, amplitude: float, tp: float) -> bool:
-        """Whether +amplitude [g] for tp [s] and −amplitude/2 for 2 tp overturn it."""
+        """Whether +amplitude [g] for tp [s] and −amplitude/2 for 2 tp overturn it while it is watched."""
         return bool(self.run([Motion(impulse(amplitude * G, tp, REBOUND))]).collapsed)
 
     def run(self, motions: Sequence[Any]) -> Any:
         """What became of it under the sum of motions (ensembles/shaken_run.py: Run)."""
         run = self.rested.shaken(motions)
-        assert run.collapsed is not None, run.how
+        assert run.ending, run.how
         self.runs, self.seconds = self.runs + 1, self.seconds + run.seconds
         return run
 
