@@ -51,7 +51,7 @@ class BrakedMotion:
         return any(bool((way > least).any()) for way in ways)
 
     def share(self, sim: DynamicSimulation, books: Energy) -> float:
-        """Of all that was lost, or of the largest kinetic energy where less was lost than that [-]."""
+        """Share of the losses, or of the largest kinetic energy if that is more, that mass damping took [-]."""
         whole = max(measures.taken(books), sim.most_kinetic)
         return self.energy / whole if whole > 0.0 else 0.0
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class MotionStretch(NamedTuple):
-    """What a stretch of motion showed."""
+    """Samples and extreme values of the monitors in a stretch of a time history."""
 
     times: np.ndarray  # of the samples [s], (n,)
     base: np.ndarray  # acceleration, velocity and displacement of the base there [m, s], (n, 3, d)

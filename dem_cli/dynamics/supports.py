@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def carriers_of(sim: DynamicSimulation) -> Carriers:
-    """What carries each free block now: faces of others that push it up; where nothing pushes, those below that touch.
+    """Faces that support each free block now: those that push it up; where nothing pushes, those below that touch.
 
     Blocks that nothing carries have no rows: they fly, or hang on links.
     """

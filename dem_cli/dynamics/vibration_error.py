@@ -46,7 +46,7 @@ class VibrationError(NamedTuple):
 
 
 class Swing(NamedTuple):
-    """What motions make of oscillators, (n_motions, n)."""
+    """Response of oscillators to ground motions, arrays of (n_motions, n)."""
 
     largest: np.ndarray  # displacement, at samples and after the end [m]
     vibration: np.ndarray  # that of the free vibration in it [m]
@@ -84,7 +84,10 @@ def refined(
 
 
 def vibration_error(sim: DynamicSimulation, motions: Sequence[Motion], step: float, duration: float) -> VibrationError:
-    """Of joints as they stand: those that touch act. Each motion acts by itself, for `duration` [s]."""
+    """Error that the time step makes in elastic vibrations, under each motion alone for `duration` [s].
+
+    Joints that touch now act.
+    """
     model, d, count = sim.model, sim.model.dimension, sim.settings.frequency.dense
     springs = system(sim, sim.measured().gaps <= sim.settings.modes.closes * sim.smallest)
     lowest = modes(springs, count if springs.masses.size <= count else sim.settings.history.modes, d, model.n_blocks)
@@ -134,14 +137,14 @@ def rates_of(omegas: np.ndarray, ratios: np.ndarray) -> np.ndarray:
 
 
 def rates_at(step: float, omegas: np.ndarray, ratios: np.ndarray) -> np.ndarray:
-    """The same as a stable time step has them."""
+    """Eigenvalues λ of oscillators in explicit steps of `step` [s], whose period is too short: [1/s], (n,) complex."""
     middle, lost = 1.0 - 0.5 * (step * omegas) ** 2, ratios * omegas * step
     z = (middle + 1j * np.sqrt(np.maximum(1.0 - lost**2 - middle**2, 0.0))) / (1.0 + lost)
     return (functions.log(np.abs(z)) + 1j * functions.arctan2(z.imag, z.real)) / step
 
 
 def swing(values: np.ndarray, step: float, rest: float, omegas: np.ndarray, ratios: np.ndarray) -> Swing:
-    """Of oscillators with ω [rad/s] and damping ratios, (n_motions, n), on motions that are at rest after their end.
+    """Exact response of oscillators with ω [rad/s] and damping ratios to ground motions that rest after their end.
 
     values: acceleration [m/s²], linear between samples `step` [s] apart, (n_motions, n_samples); rest: time after [s].
     """

@@ -102,7 +102,7 @@ class DynamicSimulation(Simulation):
         self.contacts.exchanged[:] = 0.0
 
     def take_carriers(self, carriers: Carriers) -> None:
-        """What carries the blocks when the motion begins."""
+        """Keeps which faces support the blocks when the motion begins."""
         self.carriers = carriers
 
     @property

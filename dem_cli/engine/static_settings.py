@@ -136,7 +136,7 @@ class ImplicitHistorySettings:
     end: float = 1e-7  # of the last ones
     ahead: float = 1.5  # of the last slips, that the next step expects at most
     cut: float = 4.0  # where a step fails: so much shorter
-    most_failed: int = 40
+    most_failed: int = 12  # times in turn
     most_steps: int = 400
 
 

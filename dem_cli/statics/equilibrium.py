@@ -288,3 +288,29 @@ def settle(sim: Simulation, track: Track, budget: Budget) -> Verdict:
     track.keep("gravity")
     track.frame("gravity")
     return verdict
+
+
+class _MovingOn:
+    """How far blocks have moved [m], and the share of the work that was released."""
+
+    def __init__(self) -> None:
+        self.moved = self.released = 0.0
+
+
+@stage
+def released_in_motion(sim: Simulation, budget: Budget, load: float, far: float) -> float:
+    """Share of the work of a constant load that is released, once blocks moved on by so much [m] and any is."""
+    start, ledger, way, begun = sim.places(), measures.energy_sums(sim), _MovingOn(), sim.steps
+    chunk = sim.settings.relaxation.chunk
+    sim.stages.resumed(way)
+    while way.moved < far or way.released <= 0.0:
+        sim.stages.offer(way)
+        steps = chunk * (1 + (sim.steps - begun) // (10 * chunk))  # a look costs as many
+        sim.advance(steps, slot.HOLD_LOAD)
+        budget.spend(steps, f"at load multiplier {load * sim.live_scale:.5g}")
+        check_finite(sim)
+        way.moved = float(np.abs(sim.places() - start).max())
+        now = measures.energy_sums(sim)
+        given = now.given - ledger.given
+        way.released = 1.0 - (now.taken - ledger.taken) / given if given > 0.0 else 0.0
+    return way.released

@@ -29,9 +29,17 @@ from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
-from dem_cli.output.resume.stages import stage
 from dem_cli.statics.compliance import check_moves, compliance
-from dem_cli.statics.equilibrium import Ahead, Verdict, check_finite, relax, settle_or_fail, unexpected
+from dem_cli.statics.creep import creep_evenly, creep_to_rest
+from dem_cli.statics.equilibrium import (
+    Ahead,
+    Verdict,
+    check_finite,
+    relax,
+    released_in_motion,
+    settle_or_fail,
+    unexpected,
+)
 from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, LoadPass, SearchRange
 from dem_cli.statics.mechanism import follows
 from dem_cli.statics.trial_loads import TrialLoads
@@ -309,7 +317,7 @@ class LoadSearch:
         sim, shown = self.sim, self.settings.shown * self.answer.elastic * load
         sim.use_combined_damping()
         sim.set_load((1.0 + pushed) * load)
-        released = _released_in_motion(sim, self.budget, load, shown)
+        released = released_in_motion(sim, self.budget, load, shown)
         sim.set_load(load)
         if pushed:
             sim.advance(1, slot.HOLD_LOAD)  # what is out of balance at the load itself
@@ -327,13 +335,13 @@ class LoadSearch:
         for phase in range(settings.phases + 1):
             sim.prescribe_rate(rate * 0.5**phase)
             looks = settings.looks if phase == 0 else settings.looks // 2
-            loads += _creep_evenly(sim, settings.first_phase // settings.looks, looks)
+            loads += creep_evenly(sim, settings.first_phase // settings.looks, looks)
             check_finite(sim)
             if sim.kinematics == "large" and loads[-1] < settings.softened * max(loads):
                 break
         else:
             sim.prescribe_rate(0.0)
-            if _creep_to_rest(sim, settings.hold_steps // sim.settings.relaxation.chunk):
+            if creep_to_rest(sim, settings.hold_steps // sim.settings.relaxation.chunk):
                 self.answer.crept = sim.load
                 sim.rest()
                 self.answer.crept_state = sim.save()
@@ -500,64 +508,3 @@ class LoadSearch:
         elastic = sim.settings.proof.not_elastic * answer.elastic * load
         if answer.onset is None and measures.largest_displacement(sim) > answer.settled + elastic:
             answer.onset = load * sim.live_scale
-
-
-class _Looks:
-    """How often was looked so far, how often in a row forces balanced, and the loads that were seen."""
-
-    def __init__(self) -> None:
-        self.done, self.calm = 0, 0
-        self.loads: list[float] = []
-
-
-class _MovingOn:
-    """How far blocks have moved [m], and the share of the work that was released."""
-
-    def __init__(self) -> None:
-        self.moved = self.released = 0.0
-
-
-@stage
-def _creep_evenly(sim: Simulation, steps: int, looks: int) -> list[float]:
-    """A creep at the rate that is prescribed, of so many steps to each look: mean internal multiplier of each."""
-    way = _Looks()
-    sim.stages.resumed(way)
-    while way.done < looks:
-        sim.stages.offer(way)
-        sim.advance(steps, sim.creep_mode)
-        way.done += 1
-        way.loads.append(sim.mean_load)
-    return way.loads
-
-
-@stage
-def _creep_to_rest(sim: Simulation, looks: int) -> bool:
-    """The end of a creep, at rate zero; whether it ends in an equilibrium."""
-    relaxation, way = sim.settings.relaxation, _Looks()
-    sim.stages.resumed(way)
-    while way.done < looks:
-        sim.stages.offer(way)
-        sim.advance(relaxation.chunk, sim.creep_mode)
-        way.done, way.calm = way.done + 1, way.calm + 1 if sim.unbalanced < relaxation.tolerance else 0
-        if way.calm == relaxation.looks_at_rest:
-            return True
-    return False
-
-
-@stage
-def _released_in_motion(sim: Simulation, budget: Budget, load: float, far: float) -> float:
-    """Share of the work of a constant load that is released, once blocks moved on by so much [m] and any is."""
-    start, ledger, way, begun = sim.places(), measures.energy_sums(sim), _MovingOn(), sim.steps
-    chunk = sim.settings.relaxation.chunk
-    sim.stages.resumed(way)
-    while way.moved < far or way.released <= 0.0:
-        sim.stages.offer(way)
-        steps = chunk * (1 + (sim.steps - begun) // (10 * chunk))  # a look costs as many
-        sim.advance(steps, slot.HOLD_LOAD)
-        budget.spend(steps, f"at load multiplier {load * sim.live_scale:.5g}")
-        check_finite(sim)
-        way.moved = float(np.abs(sim.places() - start).max())
-        now = measures.energy_sums(sim)
-        given = now.given - ledger.given
-        way.released = 1.0 - (now.taken - ledger.taken) / given if given > 0.0 else 0.0
-    return way.released

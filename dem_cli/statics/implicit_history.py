@@ -4,7 +4,7 @@ A step is the contact problem of limit/interior.py with a viscosity C / Δt on i
 weight of a block per elastic displacement). Δt grows as long as blocks hardly move, so that a load that is carried
 comes to rest in a few steps. At a load that fails blocks move on for ever, and the power of the viscosity says how much
 less the structure resists with: λs = λ − Σ C v² / (q · v). Where λs grows no more while the displacement doubles, the
-load fails. λs over the displacement is the capacity curve of this history.
+load fails.
 
 It is a history under load: it steps over no plateau. Joints remember their slip from step to step.
 """
@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import cycle, islice
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,10 +28,18 @@ HOLDS, FAILS, UNDECIDED = "holds", "fails", "undecided"  # verdicts
 
 
 class Resisted(NamedTuple):
-    """What a structure resists with after a step: a point of the capacity curve."""
+    """Resistance of a structure after a step."""
 
     displacement: float  # of the live load since gravity, over its elastic one at the multiplier 1
     load: float  # multiplier λs, as users know it
+
+
+class _Step(NamedTuple):
+    """A step of time that was found."""
+
+    state: State  # at its end
+    length: float
+    speed: float  # largest displacement over its length
 
 
 class Level(NamedTuple):
@@ -59,7 +68,6 @@ class LoadHistory(NamedTuple):
     high: float  # that load, a multiplier as users know it
     held: list[HeldState]  # equilibria, upwards
     levels: list[Level]  # in the order in which they were tried
-    curve: list[Resisted]
 
     @property
     def low(self) -> float:
@@ -81,7 +89,7 @@ class ImplicitHistory:
     """Loads that hold and fail, in steps from gravity; loads are multipliers as users know them.
 
     stop: whether to give up, asked before each step. The highest load that held is `low` with its `state`, the lowest
-    that failed `high`; the `curve` is what the structure resisted with on the way.
+    that failed `high`.
     """
 
     problem: Elastic
@@ -94,7 +102,6 @@ class ImplicitHistory:
     work: float = 0.0  # of the live loads until then [J]
     held: list[HeldState] = field(default_factory=list)
     levels: list[Level] = field(default_factory=list)
-    curve: list[Resisted] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self._reached = 0.0  # displacement at `low`
@@ -107,7 +114,7 @@ class ImplicitHistory:
         """
         if not (self._stand() and self._close_in(bound, resolution, small)) or self.high is None or not self.held:
             return None
-        return LoadHistory(self.high, self.held, self.levels, self.curve)
+        return LoadHistory(self.high, self.held, self.levels)
 
     def _close_in(self, bound: float, resolution: float, small: bool) -> bool:
         """Load after load, until the bracket is as narrow; False where one of them stays undecided.
@@ -168,20 +175,14 @@ class ImplicitHistory:
 
     def _settled(self, state: State) -> State | None:
         """Equilibrium under dead loads, which come at once, by overdamped steps; None: they do not come to rest."""
-        settings, step, tau, in_turn = self.settings, self.settings.first_under_dead_loads, self.settings.tau, 0
-        for _ in range(self.settings.most_under_dead_loads):
-            if self.stop():
+        settings, step = self.settings, self.settings.first_under_dead_loads
+        for _ in range(settings.most_under_dead_loads):
+            taken = self._step(state, 0.0, step, 0.0)
+            if taken is None:
                 return None
-            new = self._step(state, 0.0, step, tau, 0.0)
-            if new is None:
-                step, tau = step / settings.cut, settings.other_tau[in_turn % len(settings.other_tau)]
-                in_turn += 1
-                continue
-            speed = float(np.abs(new.displacements - state.displacements).max()) / step
-            state, tau, in_turn = new, settings.tau, 0
-            if speed < settings.at_rest:
+            state, step = taken.state, settings.growth_of_step * taken.length
+            if taken.speed < settings.at_rest:
                 return state
-            step *= settings.growth_of_step
         return None
 
     def _displacement(self, state: State) -> float:
@@ -189,52 +190,53 @@ class ImplicitHistory:
 
     def _hold(self, load: float) -> Level:
         """A constant load from the highest that held so far; where it holds it is that."""
-        problem, settings, state = self.problem, self.settings, self.state
+        problem, settings, state, reached = self.problem, self.settings, self.state, self._reached
         assert state is not None
-        step, tau, last, steps = self._first_step, settings.tau, None, 0
-        reached, failed, in_turn, past = self._reached, 0, 0, list[Resisted]()
+        step, last, past = self._first_step, 0.0, list[Resisted]()
         far = max(settings.far * reached, settings.far_per_load * load)
-        while steps < settings.most_steps and not self.stop():
-            steps += 1
-            new = self._step(state, load / problem.live_scale, step, tau, 0.0 if last is None else step / last)
-            if new is None:
-                failed, tau = failed + 1, settings.other_tau[in_turn % len(settings.other_tau)]
-                step, in_turn = step / settings.cut, in_turn + 1
-                if failed > settings.most_failed:
-                    break
-                continue
-            moved = new.displacements - state.displacements
-            speed = float(np.abs(moved).max()) / step
-            work, lost = float(product(problem.live, moved)), float(product(problem.own * moved, moved)) / step
+        for steps in range(1, settings.most_steps + 1):
+            taken = self._step(state, load / problem.live_scale, step, step / last if last else 0.0)
+            if taken is None:
+                break
+            moved = taken.state.displacements - state.displacements
+            work, lost = float(product(problem.live, moved)), float(product(problem.own * moved, moved)) / taken.length
             lacking = lost / work * problem.live_scale if work > 0.0 else 0.0
-            tau, last, state, in_turn = settings.tau, step, new, 0
-            before, reached = reached, self._displacement(new)
+            state, last, before, reached = taken.state, taken.length, reached, self._displacement(taken.state)
             past.append(Resisted(reached, load - lacking))
             self.progress(load, reached)
-            if speed < settings.at_rest:
-                self._keep(load, state, reached, past)
+            if taken.speed < settings.at_rest:
+                self._keep(load, state, reached)
                 return Level(load, HOLDS, steps, load)
-            if reached > far and (half := [one.load for one in past if one.displacement <= 0.5 * reached]):
-                lacked = load - half[-1]
-                if lacking > settings.flat * lacked:
-                    self.high = load
-                    self.curve += past
-                    return Level(load, FAILS, steps, max(one.load for one in past))
+            half = [one.load for one in past if one.displacement <= 0.5 * reached]
+            if reached > far and half and lacking > settings.flat * (load - half[-1]):
+                self.high = load
+                return Level(load, FAILS, steps, max(one.load for one in past))
             grown = reached - before
             share = settings.share * max(reached, 0.5) / grown if grown > 0.0 else np.inf
-            step *= min(settings.growth_of_step, share)
-        return Level(load, UNDECIDED, steps, max((one.load for one in past), default=0.0))
+            step = last * min(settings.growth_of_step, share)
+        return Level(load, UNDECIDED, len(past), max((one.load for one in past), default=0.0))
 
-    def _step(self, state: State, load: float, step: float, tau: float, longer: float) -> State | None:
+    def _step(self, state: State, load: float, length: float, longer: float) -> _Step | None:
+        """A step of time, made shorter with other first products as often as it fails; None: it failed in all sizes.
+
+        longer: its length over that of the step before, by which slips go on.
+        """
         problem, settings = self.problem, self.settings
         largest = max(float(state.normal.max(initial=1.0)), 1.0) ** 2
-        increment = Increment(problem, state, None, load, settings.end, problem.own / step)
-        return increment.solve(tau * largest, min(longer, settings.ahead), 0, self.stop)
+        for tau in (settings.tau, *islice(cycle(settings.other_tau), settings.most_failed)):
+            if self.stop():
+                return None
+            increment = Increment(problem, state, None, load, settings.end, problem.own / length)
+            found = increment.solve(tau * largest, min(longer, settings.ahead), 0, self.stop)
+            if found is not None:
+                speed = float(np.abs(found.displacements - state.displacements).max()) / length
+                return _Step(found, length, speed)
+            length, longer = length / settings.cut, longer / settings.cut
+        return None
 
-    def _keep(self, load: float, state: State, reached: float, past: list[Resisted]) -> None:
+    def _keep(self, load: float, state: State, reached: float) -> None:
         weight = self.problem.weight * self.problem.unit
         self.work += load / self.problem.live_scale * (reached - self._reached) * self._elastic * weight
         self.low, self.state, self._reached = load, state, reached
         moved = self.problem.displacements(state.displacements)
         self.held.append(HeldState(load, *self.problem.forces_and_gaps(state), moved, self.work))
-        self.curve += past

@@ -50,7 +50,7 @@ _PLACES = {
     "statics.equilibrium": ("Verdict",),
     "statics.failure_test": ("FailureTest",),
     "statics.hysteresis": ("PathState",),
-    "statics.implicit_history": ("HeldState", "Level", "LoadHistory", "Resisted"),
+    "statics.implicit_history": ("HeldState", "Level", "LoadHistory"),
     "statics.post_peak": ("CurvePeak",),
 }  # fmt: skip
 RECORDS: Registered[type] = Registered(

@@ -68,9 +68,10 @@ def test_resistance_grows_to_the_load_that_fails():
     history = history_of(tables(BASE, block("b", rectangle(0, 0, 0.2, 1))))
     held = history.search(0.25, RESOLUTION)
     assert held.low == pytest.approx(0.2, rel=RESOLUTION)
-    assert held.curve[-1].displacement > 2.0 * max(one.displacement for one in held.curve[:-2] if one.load < 0.18)
-    assert held.curve[-1].load == pytest.approx(0.2, rel=1e-3)
-    assert max(one.load for one in held.curve) <= held.high
+    failed = [level for level in held.levels if level.verdict == FAILS]
+    assert failed
+    assert all(level.resisted == pytest.approx(0.2, rel=1e-3) for level in failed)
+    assert all(level.resisted <= level.load for level in held.levels)
 
 
 def test_work_is_that_of_the_loads_on_the_way():
