@@ -113,7 +113,7 @@ class WarmStartSettings:
 class ImplicitHistorySettings:
     """Overdamped implicit steps under constant loads (statics/implicit_history.py): loads, steps, and verdicts."""
 
-    blocks: int = 60  # of one structure in the plane, from which on it is quicker than the path and loads after it
+    blocks: int = 150  # of one structure in the plane, from which on it is quicker than the path and loads after it
     effort: float = 2e7  # factorisations × points before giving up
     narrow: float = 0.5  # of the resolution: width of the bracket, so that a load beyond it fails soon
     shares: tuple[float, ...] = (0.5, 0.8, 0.9)  # of the bound: first loads

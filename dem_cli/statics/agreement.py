@@ -54,6 +54,8 @@ def histories(search: FailureLoad) -> list[History]:
     """All ways to failure that were tried, that of the answer first."""
     way = {CURVE: FROM_CURVE, AT_PATH: PATH, IMPLICIT: IN_IMPLICIT_STEPS}.get(str(search.start.get("kind")), RAISED)
     found = [] if search.low is None else [History(way, search.low, search.found and not search.wide)]
+    if way == IN_IMPLICIT_STEPS and search.raised is not None:
+        found.append(History(RAISED, search.raised, False))
     if search.earlier is not None:
         found.append(History(IN_LARGE_STEPS, search.earlier[0], True))
     limits = search.limits

@@ -53,6 +53,7 @@ class FailureLoad:
     undecided: list[float] = field(default_factory=list)  # loads at which neither was proved
     start: dict[str, Any] = field(default_factory=dict)  # how the structure came next to failure
     limits: RigidLimits | None = None  # limit analysis of the same structure
+    raised: float | None = None  # highest load that was raised from gravity beside an implicit history
     path_of_start: float | None = None  # where blocks move: load of the zero-dilation path in the geometry of the start
 
     @property

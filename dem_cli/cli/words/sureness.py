@@ -9,6 +9,7 @@ from dem_cli.cli.words.limit_loads import WEDGED, wedged
 from dem_cli.cli.words.numbers import load_text, seconds
 from dem_cli.cli.words.reference import reference_rows
 
+RAISED = "raised from gravity"  # a history of the explicit solver
 IMPLICIT = "implicit history"  # start of a search that was led from gravity in implicit steps
 STARTS = {"path": "the zero-dilation path", "limit": "the forces of limit analysis"}  # analysis.start
 
@@ -28,7 +29,8 @@ def sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         )
     if start.get("kind") == IMPLICIT:
         loads = f"{start['loads']} loads in implicit steps, {seconds(start['seconds'])}"
-        rows.append(("from gravity", f"{loads}; motion step by step shows both ends"))
+        raised = next(one["load"] for one in summary["histories"] if one["method"] == RAISED)
+        rows.append(("from gravity", f"{loads}; motion step by step up to {load_text(raised)}, and at both ends"))
     limits = summary.get("limit_analysis") or {}
     known = [key for key in ("associated", "non_associated") if limits.get(key) is not None]
     if known:
