@@ -131,7 +131,7 @@ def _ended(sim: DynamicSimulation, analysis: ShakingAnalysis, coda: _Coda, most:
             since = coda.quiet_at - coda.since
             return Ending(STOOD, None, since, since == 0.0 or swings.small())
         coda.quiet = None
-    long_enough = coda.done >= history.least_coda * min(most, history.least_limit / sim.dt)
+    long_enough = coda.done * sim.dt >= history.least_coda * history.least_limit
     if coda.quiet is None and long_enough and swings.turned_back() and not (swings.small() and balances(sim)):
         return Ending(STOOD if swings.small() else ROCKS, None, followed, swings.small())
     return Ending(MOVES, None, followed) if coda.done >= most and coda.quiet is None else None
@@ -199,7 +199,8 @@ class Swings:
 
     def turned_back(self) -> bool:
         """Whether no block went farther in the second half of the time than in the first, to either side, by what
-        counts; none may be farther out now.
+        counts; none may be farther out now, and none that went anywhere farther than in all looks before: what slows
+        down towards its balance does.
         """
         middle = len(self._looks) // 2
         if middle == 0:
@@ -210,6 +211,11 @@ class Swings:
         way = high - low
         small = np.minimum(history.steady * smallest, history.doubles * way + history.creeps * smallest)
         beyond = np.maximum(second - high, low - second)
+        before, now = np.array(self._looks[:-1]), self._looks[-1]
+        outwards = np.maximum(now - before.max(axis=0), before.min(axis=0) - now)
+        went = np.ptp(before, axis=0) > history.noticeable * smallest
+        if (went & (outwards > history.creeps * smallest)).any():
+            return False
         return bool((beyond[-1] <= small).all() and (beyond <= small + history.grows * way).all())
 
     def grew(self) -> bool:

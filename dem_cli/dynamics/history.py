@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from dem_cli.engine.track import Track
 
 WAYS = {"damping": "local", "mass_damping": "mass"}  # other words for some of them
+CUT = 1e-6  # of a motion, that may be left over where a duration is that of the motion
 TAKERS = ("friction", "dashpots", "mass_damping", "maxwell", "damping")  # fields of Energy
 
 
@@ -264,6 +265,9 @@ class TimeHistory:
                 "slows every motion; use it for nothing but a test"
             )
         self._doubt_what_follows()
+        if self.duration < (1.0 - CUT) * self.ground.duration:
+            whole, cut = f"{self.ground.duration:.4g}", f"{self.duration:.4g}"
+            self.job.contradictions.append(f"its motion of {whole} s was cut at {cut} s")
         braked = 0.0 if fell else self.braked.share(sim, measures.energy(sim))
         if braked > self.job.settings.doubts.governs:
             self.job.warnings.append(braked_words(self.case, braked))

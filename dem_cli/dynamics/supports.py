@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.arithmetic import functions
+from dem_cli.arithmetic.products import product
 from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine import measures
 from dem_cli.engine.state import NO_CARRIERS, Carriers
@@ -65,8 +66,8 @@ def lost_supports(sim: DynamicSimulation, least: np.ndarray) -> np.ndarray:
         block = int(sim.free[k])
         faces = carriers.faces[carriers.blocks == block]
         touched = _touched(sim, block)
-        here = np.isin(touched, faces)
-        beside = block in carriers.above and not here.all() and not _above(sim, block, faces)
+        here = np.isin(touched, faces) | _go_on(sim, touched, faces)
+        beside = block in carriers.above and not here.all() and not _above(sim, block, touched[here])
         if beside or not here.any():
             found[k] = lowered[block]
     return found
@@ -85,13 +86,36 @@ def _touched(sim: DynamicSimulation, block: int) -> np.ndarray:
     return np.concatenate([meeting[met, 1 - side][ours[met, side]] for side in (0, 1)])
 
 
+def _go_on(sim: DynamicSimulation, touched: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Which faces (n,) go on in the plane of one of `faces`, as the next stone of a ramp does, (n,) bool."""
+    near = sim.settings.history.touches * sim.smallest
+    planes, others = ([_corners(sim, face) for face in some] for some in (faces, touched))
+    return np.array([any(_off_plane(plane, other) <= near for plane in planes) for other in others], bool)
+
+
+def _corners(sim: DynamicSimulation, face: int) -> np.ndarray:
+    """Corners of a face where it is now [m], (n, d)."""
+    topology = sim.model.topology
+    return sim.bodies.corners[topology.face_corners[topology.face_starts[face] : topology.face_starts[face + 1]]]
+
+
+def _off_plane(corners: np.ndarray, points: np.ndarray) -> float:
+    """How far the farthest of some points is from the plane of a face by its corners, or in 2D from its line [m]."""
+    rest, off = corners - corners[0], points - corners[0]
+    for _ in range(corners.shape[1] - 1):
+        along = rest[np.square(rest).sum(axis=1).argmax()]
+        along = along / np.sqrt(np.square(along).sum())
+        rest, off = (arms - product(arms, along)[:, np.newaxis] * along for arms in (rest, off))
+    return float(np.sqrt(np.square(off).sum(axis=1)).max())
+
+
 def _above(sim: DynamicSimulation, block: int, faces: np.ndarray) -> bool:
     """Whether the centre of a block is above what these faces cover together in plan."""
-    topology, d = sim.model.topology, sim.model.dimension
-    corners = np.concatenate([
-        topology.face_corners[topology.face_starts[face] : topology.face_starts[face + 1]] for face in faces
-    ])  # fmt: skip
-    arms = sim.bodies.corners[corners, : d - 1] - sim.bodies.positions[block, : d - 1]
+    d = sim.model.dimension
+    if not len(faces):
+        return False
+    corners = np.concatenate([_corners(sim, face) for face in faces])
+    arms = corners[:, : d - 1] - sim.bodies.positions[block, : d - 1]
     if d == 2:
         return bool(arms.min() <= 0.0 <= arms.max())
     angles = np.sort(functions.arctan2(arms[:, 1], arms[:, 0]))

@@ -59,7 +59,7 @@ class HistorySettings:
     quiet: float = 1e-3  # ... with so much of the noticeable energy at most
     steady: float = 0.01  # of the smallest edge: what blocks may go beyond earlier places and have turned back
     grows: float = 0.05  # of the way between these, that they may have gone beyond in passing
-    least_coda: float = 0.4  # of the coda, before which no structure that moves is taken for one that has turned back
+    least_coda: float = 0.4  # of `least_limit`, before which none that moves is taken for one that has turned back
     least_limit: float = 5.0  # s that a structure is followed after its motion at most, or longer where it is tall:
     limit: float = 20.0  # so many √(half its height / g); a block near its balance falls or turns back within ten
     one_more: float = 1.0  # s that what hardly moves must go on hardly moving to be at rest

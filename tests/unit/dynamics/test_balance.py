@@ -88,3 +88,23 @@ def test_without_a_coda_a_second_more_is_looked_at():
     assert engine.solve(let_go(1.01, coda=0.0))[0]["ending"] == "still moving"
     found = engine.solve(let_go(0.2, coda=0.0, duration=20.0))[0]
     assert (found["ending"], found["followed"]) == ("stood", 0.0)
+
+
+@pytest.mark.parametrize("share", [1.0001, 1.03])
+def test_what_slows_down_towards_its_balance_has_not_turned_back(share):
+    """Pushed outwards at 0.99 of its balance, by more speed than it needs: it "stood, still rocking"."""
+    p2, angle = 0.75 * G / RADIUS, 0.99 * BALANCE
+    speed = share * math.sqrt(2.0 * p2 * (1.0 - math.cos(BALANCE - angle)))
+    case = let_go(0.99, duration=0.05)
+    lean = math.atan2(0.5 * HEIGHT, HALF) + angle  # of the centroid about the corner that carries it
+    push = [-speed * RADIUS * math.sin(lean), speed * RADIUS * math.cos(lean), speed]
+    case["initial"] = [{"block": "b0", "tilt": angle, "velocity": push}]
+    found = engine.solve(case)[0]
+    assert found["collapsed"] is True
+    assert found["collapse_time"] > 5.0
+
+
+def test_a_tenth_of_a_second_says_nothing_of_what_rocks():
+    """It falls after some five seconds; one look after the motion it was taken for one that had turned back."""
+    found = engine.solve(let_go(1.01, coda=0.1))[0]
+    assert found["collapsed"] is None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import engine
+import numpy as np
 import pytest
 from engine import block, rectangle, tables
 
@@ -90,3 +91,41 @@ def test_repeats_and_fragility_see_the_same_fall():
     assert engine.solve(case)[0]["repeats"]["share_collapsed"] == 1.0
     case["analysis"] = {"kind": "fragility", "intensities": [1.0, 12.0]}
     assert engine.solve(case)[0]["share"] == [0.0, 1.0]
+
+
+def test_a_lintel_with_one_end_on_the_ground_has_fallen():
+    """Its other pier still carries it, beside its centre; between both piers there is nothing any more."""
+    piers = [
+        drawn("p1", -0.3, 0.0, 0.2, 0.45, False), drawn("p2", 2.0, 0.0, 3.6, 0.45, False),
+        drawn("b", -0.1, 0.45, 2.4, 0.95, False),
+    ]  # fmt: skip
+    case = tables(
+        drawn("ground", *GROUND, False, fixed=True), *piers, joints=STONE,
+        initial=[{"block": "p1", "velocity": [-3.5, 0.0, 0.0]}], analysis={"kind": "time-history", "duration": 2.0},
+    )  # fmt: skip
+    found = engine.solve(case)[0]
+    assert found["collapsed"] is True
+    assert "b" in found["fallen_blocks"]["first"]
+
+
+@pytest.mark.parametrize("parts", [1, 2])
+def test_what_slides_on_to_the_next_stone_of_a_ramp_stands(parts):
+    """20°, friction 0.6: it stops after v² / 2 g (μ cos − sin) = 0.28 m, wherever the joint of the ramp is."""
+    slope = np.radians(20.0)
+    along, up = np.array([np.cos(slope), -np.sin(slope)]), np.array([np.sin(slope), np.cos(slope)])
+
+    def stone(name: str, left: float, right: float, bottom: float, top: float, **more) -> dict:
+        corners = [(left, bottom), (right, bottom), (right, top), (left, top)]
+        return block(name, [(x * along + y * up).tolist() for x, y in corners], **more)
+
+    ends = (-3.0, 0.12, 3.0) if parts == 2 else (-3.0, 3.0)
+    ramp = [stone(f"g{i}", *ends[i : i + 2], -0.5, 0.0, fixed=True) for i in range(parts)]
+    case = tables(
+        *ramp, stone("b", -0.1, 0.1, 0.0, 0.2), joints={"dry": {"friction": 0.6}},
+        initial=[{"block": "b", "velocity": [*(1.1 * along).tolist(), 0.0]}],
+        analysis={"kind": "time-history", "duration": 1.0},
+    )  # fmt: skip
+    found = engine.solve(case)[0]
+    way = 1.1**2 / (2.0 * G * (0.6 * np.cos(slope) - np.sin(slope)))
+    assert found["collapsed"] is False
+    assert found["largest_displacement"] == pytest.approx(way, rel=2e-3)
