@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Sequence
 from difflib import get_close_matches
+from functools import cache
 from typing import Any, NamedTuple
 
 from pydantic import BaseModel
@@ -105,12 +106,15 @@ def _everyday(query: str) -> str | None:
     return next((path for words, path in EVERYDAY_WORDS.items() if plain in words.split()), None)
 
 
-def entries(model: type[BaseModel]) -> Iterator[CaseEntry]:
+@cache
+def entries(model: type[BaseModel]) -> tuple[CaseEntry, ...]:
     """All tables and all keys, of each kind for itself; keys whose value can only be a table as that table."""
+    found: list[CaseEntry] = []
     for table in tables(model):
         if table.path:
-            yield CaseEntry(table, None, table.kinds)
-        yield from (CaseEntry(table, key, table.kinds) for key in table.keys if not key.only_tables)
+            found.append(CaseEntry(table, None, table.kinds))
+        found += [CaseEntry(table, key, table.kinds) for key in table.keys if not key.only_tables]
+    return tuple(found)
 
 
 def _rank(words: Sequence[str], entry: CaseEntry, names: Collection[str]) -> tuple[int, int] | None:

@@ -11,6 +11,7 @@ import inspect
 import re
 import sys
 from collections.abc import Iterator
+from functools import cache
 from typing import Any, Literal, NamedTuple, get_args, get_origin
 
 import tomli_w
@@ -182,14 +183,15 @@ def json_schema(model: type[BaseModel]) -> dict[str, Any]:
     return schema
 
 
-def tables(model: type[BaseModel]) -> list[CaseTable]:
+@cache
+def tables(model: type[BaseModel]) -> tuple[CaseTable, ...]:
     """All tables of a case in the order of their keys, those in others after them; the case itself comes first."""
     found: dict[tuple[tuple[str, ...], type[BaseModel]], CaseTable] = {}
     for table in _below(CaseTable((), model, False, "", (), "")):
         known = found.setdefault((table.path, table.declared), table)
         kinds = tuple(dict.fromkeys(known.kinds + table.kinds))
         found[table.path, table.declared] = known._replace(kinds=kinds)
-    return list(found.values())
+    return tuple(found.values())
 
 
 def _below(table: CaseTable) -> Iterator[CaseTable]:

@@ -86,6 +86,7 @@ def project(tmp_path_factory):
             text = (folder / path).read_text(encoding="utf-8")
             assert text.count(before) == 1, f"{path}: {before}"
             (folder / path).write_text(text.replace(before, after), encoding="utf-8")
+    (folder / "case.toml").write_text(CASE, encoding="utf-8")
     for script, *words in dict.fromkeys(words for recipe in RECIPES.values() for words in recipe.commands):
         python(folder, *SCRIPTS[script], *(words if script == "scripts/study" else []))
     return folder
@@ -119,7 +120,6 @@ def test_pages_and_help_name_what_is_new(project):
 
 def test_a_case_runs(project):
     """It slides on its base at the load that the strength says."""
-    (project / "case.toml").write_text(CASE, encoding="utf-8")
     answer = json.loads(python(project, "-m", "dem_cli", "run", "case.toml", "--json"))
     assert answer["failure_load"] == pytest.approx(5e3 / WEIGHT, rel=0.002)
     assert answer["failure_mode"] == "sliding"
