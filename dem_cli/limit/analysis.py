@@ -126,7 +126,7 @@ def limit_loads(
         friction = None
         if not associated_only:
             found = found._replace(no_path=f"not looked for: the path knows friction alone, and law '{law.name}' more")
-    if structure.links:
+    if structure.links.elsewhere:
         friction, found = None, found._replace(no_path=None if associated_only else f"not looked for: {NO_LINKS}")
     if associated.status == FALLS:
         return found
@@ -146,7 +146,12 @@ def with_path(found: LimitLoads, settings: LimitSettings) -> LimitLoads:
     """
     structure, associated = found.structure, found.associated
     blocks, dimension = largest_structure(structure.joints.blocks, structure.model.fixed), structure.model.dimension
-    if associated.upper is None or structure.links or not structure.dead.any() or settings.too_large(blocks, dimension):
+    if (
+        associated.upper is None
+        or structure.links.elsewhere
+        or not structure.dead.any()
+        or settings.too_large(blocks, dimension)
+    ):
         return found
     if not slides(structure, found.friction, associated, settings.associated):
         return found

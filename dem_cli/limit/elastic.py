@@ -9,6 +9,8 @@ In units of a mean block weight W and of W over a median joint stiffness. For ev
 In space friction acts nearer to the centre of pressure of its joint than its point (contact/corner_forces.py): Bt is
 that of the normal forces at the begin of the increment, which are those at its end where the load grows no more.
 
+Ties are points without friction, which press as they grow longer (links/tension_points.py).
+
 with the cones K of limit.slips, equilibrium Bᵀ(N, T) + dead + λ live = 0 and live·u = D. The bound μN moves with N
 inside Newton's iteration, so that the law is the real, non-associated one; the matrix is not symmetric.
 """
@@ -22,13 +24,18 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags, vstack
 
 from dem_cli.contact.compatibility import free_columns, relative_motion
+from dem_cli.errors import UsageError
 from dem_cli.kernels.records import Joints
-from dem_cli.limit.matrices import Structure
+from dem_cli.limit.matrices import NO_LINKS, Structure
 from dem_cli.limit.newton_matrix import FrontFactors, NewtonMatrix, PointRows
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings, PathSettings
 from dem_cli.limit.slip_cones import SlipCones
 from dem_cli.limit.slip_pairs import SlipPairs
 from dem_cli.limit.slips import Slips
+from dem_cli.links.tension_points import TensionPoints
+
+NO_TIES = np.zeros(0)
+FAR = 1e6  # units that the point of a tie which yields is open: it carries nothing
 
 
 def pairs_of(n_points: int, settings: PathSettings) -> SlipPairs:
@@ -57,6 +64,7 @@ class State(NamedTuple):
     shear: np.ndarray  # T, component by component, ((d − 1)·n_points,)
     slip: np.ndarray  # a of the last increment (limit.slips), (d·n_points,)
     left: float = 0.0  # mean product N p and c ∘ a of a state on the central path, where no solution was found
+    plastic: np.ndarray = NO_TIES  # elongations of ties for good, (n_ties,)
 
 
 class Direction(NamedTuple):
@@ -78,9 +86,9 @@ class Direction(NamedTuple):
 
 
 class Elastic:
-    """Matrices of a structure whose joints are elastic, scaled.
+    """Matrices of a structure whose joints are elastic, scaled; the points of its ties follow those of its joints.
 
-    gaps: of all points where displacements are zero [m], (n_points,), negative: overlaps; None: they just touch.
+    gaps: of all joints where displacements are zero [m], (n_joint_points,), negative: overlaps; None: they just touch.
     """
 
     def __init__(
@@ -97,10 +105,21 @@ class Elastic:
         length = float((structure.scales.reshape(blocks, n_dof)[:, -1] / structure.scales[::n_dof]).mean())
         self.stiffness = float(np.median(joints.kn))
         self.unit = self.weight / self.stiffness  # of displacements [m]
-        self.gaps: np.ndarray | float = 0.0 if gaps is None else gaps / self.unit
         self.columns = np.tile(np.where(np.arange(n_dof) < d, 1.0, 1.0 / length), blocks)
         scaled = structure.compatibility.multiply(self.columns[None, :]).tocsr()
         self.kn, self.ks = joints.kn / self.stiffness, joints.ks / self.stiffness
+        self.n_joint_points = len(self.kn)
+        self.ties: TensionPoints | None = None
+        first_gaps = np.zeros(self.n_joint_points) if gaps is None else gaps / self.unit
+        if structure.links.elsewhere:
+            raise UsageError(NO_LINKS)
+        if structure.links.pulling is not None:
+            self.ties = structure.links.pulling.scaled(self.weight, self.unit, self.columns)
+            self.kn = np.concatenate([self.kn, self.ties.stiffness])
+            self.ks = np.concatenate([self.ks, np.ones(len(self.ties.most))])
+            first_gaps = np.concatenate([first_gaps, np.zeros(len(self.ties.most))])
+            friction = np.concatenate([friction, np.ones(len(self.ties.most))])  # of what never slides
+        self.gaps = first_gaps
         self.ks_t = np.tile(self.ks, d - 1)  # as the shear forces are numbered
         self.slips: Slips = KINDS[d](len(self.kn), settings.path)
         self.friction = np.maximum(friction, settings.path.least_friction)
@@ -114,12 +133,19 @@ class Elastic:
         self.factorisations = 0
         self.matrix = NewtonMatrix(self._points(structure), settings.path)
         self.order = order = self.matrix.order
-        motion = vstack([scaled[k::d] for k in range(d)])[:, order]  # openings, then slides as shear is numbered
+        rows = [scaled[k::d] for k in range(d)]  # openings, then slides as shear is numbered
+        if self.ties is not None:
+            rows = [vstack([each, (-1.0 if k == 0 else 0.0) * self.ties.elongation]) for k, each in enumerate(rows)]
+        motion = vstack(rows).tocsr()[:, order]
         self.motion, self.pull = motion.tocsr(), motion.T.tocsr()
         self.drawn = DrawnFriction(self, joints) if d == 3 and (joints.torsion != 1.0).any() else None
         self.columns, self.dead, self.live, self.own = (
             values[order] for values in (self.columns, self.dead, self.live, self.own)
         )
+        if self.ties is not None:
+            self.ties = self.ties._replace(elongation=self.ties.elongation[:, order].tocsr())
+        self.own_dead = self.dead  # without ties that yield
+        self.put_ties(np.zeros(self.n_ties, bool), np.zeros(self.n_ties))
 
     def displacements(self, scaled: np.ndarray) -> np.ndarray:
         """Displacements of the free degrees of freedom as the structure numbers them [m, rad], (n_free,)."""
@@ -128,15 +154,28 @@ class Elastic:
         return values
 
     def forces_and_gaps(self, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Normal forces [N], (n_points,), shear forces [N], (n_points, d − 1), and gaps [m], (n_points,)."""
-        gaps = self.opened(state.displacements)
-        closed = state.normal > self.kn * (gaps + state.normal / self.kn)
-        gaps = np.where(closed, -state.normal / self.kn, np.maximum(gaps, 0.0)) * self.unit
-        return state.normal * self.weight, state.shear.reshape(-1, self.n_points).T * self.weight, gaps
+        """Of joints: normal forces [N], (n,), shear forces [N], (n, d − 1), and gaps [m], (n,); n = n_joint_points."""
+        n = self.n_joint_points
+        gaps, normal, kn = self.opened(state.displacements)[:n], state.normal[:n], self.kn[:n]
+        closed = normal > kn * (gaps + normal / kn)
+        gaps = np.where(closed, -normal / kn, np.maximum(gaps, 0.0)) * self.unit
+        return normal * self.weight, state.shear.reshape(-1, self.n_points)[:, :n].T * self.weight, gaps
+
+    def put_ties(self, yielding: np.ndarray, plastic: np.ndarray) -> None:
+        """Ties that yield pull with their largest force, the others from their plastic elongations, (n_ties,) each."""
+        if self.ties is not None:
+            self.gaps = self.gaps.copy()
+            self.gaps[self.n_joint_points :] = self.ties.gaps(plastic) + np.where(yielding, FAR, 0.0)
+            self.dead = self.own_dead + self.ties.dead(yielding)
+
+    @property
+    def n_ties(self) -> int:
+        """Number of ties."""
+        return 0 if self.ties is None else len(self.ties.most)
 
     @property
     def n_points(self) -> int:
-        """Number of contact points."""
+        """Number of points, of joints and of ties."""
         return len(self.kn)
 
     def draw_in(self, normal: np.ndarray) -> None:
@@ -157,6 +196,10 @@ class Elastic:
         columns = free_columns(structure.model, structure.joints)
         scale = np.where(columns < 0, 0.0, np.append(self.columns, 0.0)[columns])
         rows = relative_motion(structure.joints, self.dimension) * scale[:, None]
+        if self.ties is not None:
+            pressing = np.zeros((self.n_ties, *rows.shape[1:]))
+            pressing[:, 0] = -self.ties.motion
+            rows, columns = np.concatenate([rows, pressing]), np.concatenate([columns, self.ties.columns])
         places = structure.model.centroids[~structure.model.fixed]
         return PointRows(rows, columns, ((0, 0), *self.slips.products_of_rows), len(self.columns), places)
 
@@ -182,6 +225,8 @@ class Elastic:
     def residual(self, state: State, before: State) -> float:
         """Largest unbalanced force, in own weights, of the forces that the joint law gives for the displacements."""
         self.draw_in(before.normal)
+        if self.ties is not None:
+            self.put_ties(self.ties.yielding(state.displacements, before.plastic), before.plastic)
         normal = np.maximum(-self.kn * (self.opened(state.displacements) + self.gaps), 0.0)
         trial = before.shear - self.ks_t * self.slid(state.displacements - before.displacements)
         shear = self.slips.limited(trial, self.friction * normal)
@@ -197,8 +242,10 @@ class DrawnFriction:
 
     def __init__(self, problem: Elastic, joints: Joints) -> None:
         self.problem, self.normal = problem, np.zeros(0)  # of no point: none are followed yet
-        _, self.joint = np.unique(joints.owners, return_inverse=True)
-        self.share = joints.torsion[joints.owners]
+        _, joint = np.unique(joints.owners, return_inverse=True)
+        ties = np.arange(problem.n_ties)  # each one for itself
+        self.joint = np.concatenate([joint, joint.max(initial=-1) + 1 + ties])
+        self.share = np.concatenate([joints.torsion[joints.owners], np.ones(problem.n_ties)])
         n, matrix = problem.n_points, problem.matrix
         self.rows = matrix.rows.copy()
         self.motion = [problem.motion[k * n : (k + 1) * n] for k in range(problem.dimension)]

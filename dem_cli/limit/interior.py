@@ -80,8 +80,10 @@ class Increment:
         self.viscosity = viscosity
         self.settings = problem.settings.of_increment(problem.dimension)
         self.end = (self.settings.end if end is None else end) * problem.lightest
-        problem.draw_in(before.normal)
-        self.gaps = problem.opened(before.displacements) + problem.gaps  # before, where joints have no stiffness
+        ties = problem.ties
+        self.yielding = None if ties is None else ties.elastic_force(before.displacements, before.plastic) >= (
+            (1.0 - self.settings.near_yield) * ties.most
+        )  # fmt: skip
         self.last: Iterate | None = None  # of what was solved
 
     def start(self, tau: float, ahead: float) -> Iterate:
@@ -112,14 +114,37 @@ class Increment:
         rough  mean product up to which a state on the central path is taken where the iteration got stuck (State.left)
         """
         self.settings = self.problem.settings.of_increment(self.problem.dimension, folds)
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # what runs away is given up
-            return self._solved(self.start(tau, ahead), tau, folds, stop, rough)
+        for _ in range(1 if self.yielding is None else self.settings.yieldings):
+            self._pose()
+            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # what runs away is given up
+                found = self._solved(self.start(tau, ahead), tau, folds, stop, rough)
+            if found is None or self._yields_so(found):
+                return found
+        return None
+
+    def _pose(self) -> None:
+        """The problem at the begin of this increment: friction by its forces, ties that yield, gaps."""
+        problem, before = self.problem, self.before
+        problem.draw_in(before.normal)
+        if self.yielding is not None:
+            problem.put_ties(self.yielding, before.plastic)
+        self.gaps = problem.opened(before.displacements) + problem.gaps  # where joints have no stiffness
+
+    def _yields_so(self, found: State) -> bool:
+        """Whether those ties yield that were taken to; else those that would are taken next."""
+        ties, before = self.problem.ties, self.before
+        if ties is None:
+            return True
+        yielding = ties.yielding(found.displacements, before.plastic)
+        taken, self.yielding = self.yielding, yielding
+        return bool((yielding == taken).all())
 
     def polished(self) -> State | None:
         """What was solved with smaller products, down to the end that is set; None where that fails."""
         if self.last is None:
             return None
         self.end = self.settings.end * self.problem.lightest
+        self._pose()
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             return self._solved(self.last.copy(), None, 0, lambda: False, 0.0)
 
@@ -128,7 +153,6 @@ class Increment:
     ) -> State | None:
         """tau: of the first step, which goes straight to the equations; None: they are satisfied."""
         settings, course, length = self.settings, Course(self.settings), 1.0
-        self.problem.draw_in(self.before.normal)
         while not stop():
             mean, infeasible = float(self.problem.slips.products(at.x).mean()), self._residuals(at)
             if infeasible < settings.tolerance and mean <= settings.at_end * self.end:
@@ -329,5 +353,7 @@ class Increment:
         return max(float(products.max()) / mean, mean / max(float(products.min()), 1e-300))
 
     def _state(self, at: Iterate) -> State:
-        slips = self.problem.slips
-        return State(at.u, at.load, slips.normals(at.x)[0], at.shear, slips.slip(at.x))
+        slips, ties, plastic = self.problem.slips, self.problem.ties, self.before.plastic
+        if ties is not None:
+            plastic = ties.stretched(at.u, plastic)
+        return State(at.u, at.load, slips.normals(at.x)[0], at.shear, slips.slip(at.x), plastic=plastic)

@@ -23,10 +23,11 @@ from dem_cli.contact.compatibility import compatibility
 from dem_cli.kernels.records import Joints
 from dem_cli.laws.envelope import Envelope, envelope
 from dem_cli.links.matrices import elongations, joined
+from dem_cli.links.tension_points import TensionPoints, tension_points
 from dem_cli.model.model import Model
 from dem_cli.model.scales import own_weights
 
-NO_LINKS = "the path of joints that do not dilate knows no ties and bars"
+NO_LINKS = "the path of joints that do not dilate knows no bars, and of ties only those that pull"
 
 
 class Links(NamedTuple):
@@ -35,8 +36,15 @@ class Links(NamedTuple):
     elongation: csr_matrix  # of each per degree of freedom that is free, (n_links, n_free)
     limits: np.ndarray  # least and largest axial force, tension positive [N], (n_links, 2)
 
+    pulling: TensionPoints | None  # the same as ties that only pull; None: one of them is more than that
+
     def __bool__(self) -> bool:
         return len(self.limits) > 0
+
+    @property
+    def elsewhere(self) -> bool:
+        """Whether the static problem of elastic joints (limit/elastic.py) does not know them."""
+        return bool(self) and self.pulling is None
 
     def as_points(self, dimension: int) -> tuple[csr_matrix, Envelope]:
         """They as contact points without friction that hold tension: rows as of `compatibility`, and their strength."""
@@ -109,4 +117,4 @@ def links_of(model: Model) -> Links:
     elongation = csr_matrix(elongations(springs, model.fixed))
     if len(model.restrained):
         elongation = csr_matrix(elongation @ diags((~model.held_columns).astype(float)))
-    return Links(elongation, limits)
+    return Links(elongation, limits, tension_points(model.links, model))

@@ -20,10 +20,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dem_cli.arithmetic.products import product
-from dem_cli.errors import UsageError
 from dem_cli.limit.elastic import Elastic, State
 from dem_cli.limit.interior import Increment
-from dem_cli.limit.matrices import NO_LINKS, Structure
+from dem_cli.limit.matrices import Structure
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings, PathSettings
 
 OK = "ok"
@@ -110,10 +109,8 @@ def trace(
     effort    factorisations × points after which what was reached is returned (None: as the settings)
     progress  told the load and the displacement of every increment
 
-    Raises UsageError where the structure has links.
+    Raises UsageError where links are more than ties that only pull.
     """
-    if structure.links:
-        raise UsageError(NO_LINKS)
     problem = Elastic(structure, friction, settings)
     growth_of_plateau = settings.path.plateau if plateau is None else plateau
     points = max(problem.n_points, 1)
@@ -289,7 +286,8 @@ def is_plateau(settings: PathSettings, reached: float, since: float, slope: floa
 def at_rest(problem: Elastic) -> State:
     """Blocks where they are drawn, all joints pressed by half a weight: from there dead loads come at once."""
     n, shear = problem.n_points, np.zeros(len(problem.ks_t))
-    return State(np.zeros(len(problem.columns)), 0.0, np.full(n, 0.5), shear, np.zeros(n + len(shear)))
+    still, slip = np.zeros(len(problem.columns)), np.zeros(n + len(shear))
+    return State(still, 0.0, np.full(n, 0.5), shear, slip, plastic=np.zeros(problem.n_ties))
 
 
 def _advance(

@@ -92,6 +92,8 @@ class InteriorPointSettings:
     on_arc: int = 500  # iterations on one arc
     slow: int = 40  # iterations without a fold
     endless: float = 1e12  # relative change by τ at which the path turns on the spot
+    near_yield: float = 1e-6  # share of its largest force below which a tie is taken to yield on in an increment, ...
+    yieldings: int = 8  # ... which is done so often with other ties that yield
 
 
 # Where the central path may turn back it is followed closely: a predictor leaves it too far for an arc.

@@ -167,6 +167,9 @@ class Bars(NamedTuple):
         springs = Springs(self.blocks, held.motion(axes, arms), self._own_stiffness())
         return springs, np.column_stack([-most, most])
 
+    def only_pulling(self) -> None:
+        """They are not: bars press as well, and slide in their blocks."""
+
     def _anchorage(self, number: int) -> np.ndarray:
         """Largest force of one bar at its joints [N], (n_joints of it,)."""
         begin, end, n = self.rows(number)

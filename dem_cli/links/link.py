@@ -38,6 +38,14 @@ class Springs(NamedTuple):
     stiffness: np.ndarray  # [N/m], (n,)
 
 
+class TensionSprings(NamedTuple):
+    """Springs that pull, and carry nothing when they are slack."""
+
+    springs: Springs
+    first: np.ndarray  # force while nothing moved [N], (n,)
+    most: np.ndarray  # largest force, at which they yield for good; infinite: none [N], (n,)
+
+
 class LinkReading(NamedTuple):
     """What a monitor of a link reads: a weighted sum of one column of rows of its state."""
 
@@ -87,6 +95,9 @@ class LinkArrays(Protocol):
     def bounded(self) -> tuple[Springs, np.ndarray]:
         """For limit analysis: forces where they were drawn, with the least and largest of each [N], (n, 2)."""
 
+    def only_pulling(self) -> TensionSprings | None:
+        """As springs that pull between two blocks, where they were drawn; None: they do more than that."""
+
     def yields(self) -> bool:
         """Whether the forces of any have limits at which it stretches or slides for good."""
 
@@ -97,7 +108,7 @@ class LinkArrays(Protocol):
         """Elastic energy [J]."""
 
     def follow(self, motion: np.ndarray, bodies: Any) -> None:
-        """Elongations and forces after small displacements of all blocks, (n_blocks, n_dof); none yields."""
+        """Elongations and forces after small displacements of all blocks, (n_blocks, n_dof), which grow evenly."""
 
     def length(self, number: int) -> float:
         """Of one as it was drawn [m]."""

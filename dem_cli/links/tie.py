@@ -21,7 +21,18 @@ from dem_cli.kernels.contact_point import push_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import moment, sweep
 from dem_cli.kernels.vec import axpy, dot, load, norm, scale
-from dem_cli.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, LinkReading, Outline, Springs
+from dem_cli.links.link import (
+    FORCE,
+    N_STATE,
+    PLASTIC,
+    STRETCH,
+    Link,
+    LinkEnds,
+    LinkReading,
+    Outline,
+    Springs,
+    TensionSprings,
+)
 from dem_cli.links.material_points import turned_arm
 from dem_cli.links.spans import Spans, spans
 
@@ -174,6 +185,12 @@ class Ties(NamedTuple):
         """For limit analysis: ties as they were drawn, least and largest force of each [N]."""
         return self.axial(), self.limits
 
+    def only_pulling(self) -> TensionSprings | None:
+        """They are, unless one takes compression too."""
+        if (self.limits[:, 0] < 0.0).any():
+            return None
+        return TensionSprings(self.axial(), self.prestress, self.limits[:, 1])
+
     def yields(self) -> bool:
         """Whether the force of any has a largest value."""
         return bool(np.isfinite(self.limits[:, 1]).any())
@@ -187,11 +204,13 @@ class Ties(NamedTuple):
         return 0.5 * float((self.state[:, FORCE] ** 2 / self.stiffness).sum())
 
     def follow(self, motion: np.ndarray, bodies: Any) -> None:
-        """Elongations and forces after small displacements of all blocks, (n_blocks, n_dof); none yields."""
-        springs = self.axial(bodies)
-        longer = (springs.motion * motion[springs.blocks]).sum(axis=(1, 2))
-        self.state[:, STRETCH] += longer
-        self.state[:, FORCE] = np.clip(self.state[:, FORCE] + springs.stiffness * longer, *self.limits.T)
+        """Elongations and forces after small displacements of all blocks, (n_blocks, n_dof), which grow evenly."""
+        springs, (least, most) = self.axial(bodies), self.limits.T
+        self.state[:, STRETCH] += (springs.motion * motion[springs.blocks]).sum(axis=(1, 2))
+        force = springs.stiffness * (self.state[:, STRETCH] - self.state[:, PLASTIC]) + self.prestress
+        beyond = np.maximum(force - most, 0.0) + np.where(least < 0.0, np.minimum(force - least, 0.0), 0.0)
+        self.state[:, PLASTIC] += beyond / springs.stiffness
+        self.state[:, FORCE] = np.clip(force, least, most)
 
     def length(self, number: int) -> float:
         """Of one as it was drawn [m]."""

@@ -122,7 +122,7 @@ class RigidLimits:
     @cached_property
     def path(self) -> Path | None:
         """The zero-dilation path from gravity to the plateau of its load; None where it does not apply."""
-        if self._matrices is None or self.sim.links:  # which the path does not know
+        if self._matrices is None or self._matrices[0].links.elsewhere:
             return None
         begun = time.perf_counter()
         found = self._traced(*self._matrices)
@@ -144,7 +144,7 @@ class RigidLimits:
     @cached_property
     def history(self) -> LoadHistory | None:
         """The implicit history under load from gravity to failure; None where it does not apply, or was not found."""
-        if self._matrices is None or self.sim.links or self.bound is None:
+        if self._matrices is None or self._matrices[0].links.elsewhere or self.bound is None:
             return None
         return self._timed_history(small=False)
 

@@ -45,6 +45,9 @@ class WarmStart(NamedTuple):
         share = sim.dead_share  # a tilted table has less of all loads
         gaps = np.where(self.normal > 0.0, -share * self.normal / sim.joints.kn, self.gaps)
         moves.place_at_rest(sim, share * self.normal, share * self.shear, gaps, self.displacements)
+        for link, drawn in zip(sim.links, sim.model.links, strict=True):
+            link.state[:] = drawn.state
+            link.follow(self.displacements, None)
         given = float((sim.loads.dead * self.displacements).sum()) + self.work
         sim.open_books(max(given - sim.elastic_energy(), 0.0))
 
