@@ -17,10 +17,15 @@ from dem_cli.engine.dynamic import DynamicSimulation
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.engine.viscous import Damping
+from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Ground
+from dem_cli.limit.cone import friction_of
+from dem_cli.limit.matrices import structure_of
+from dem_cli.limit.path import trace
 from dem_cli.links.link import FORCE, PLASTIC
 from dem_cli.output.record import FALLS
 from dem_cli.statics.equilibrium import stand
+from dem_cli.statics.warm_start import WarmStart
 
 GRAVITY = {"kind": "gravity", "kinematics": "large"}
 CEILING = block("ceiling", rectangle(-2, 2, 2, 2.5), fixed=True)
@@ -161,10 +166,41 @@ def test_tied_arch():
     assert summary["failure_load"] == pytest.approx(bound.multiplier, rel=1e-2)
 
 
-def test_limit_analysis_says_what_it_does_not_know_of_ties():
-    found = solved(house(1e3), associated_only=False)
+def test_the_path_ends_where_ties_yield():
+    """It knows ties that only pull: their elastic part is stretched first, prestress is there from the start."""
+    expected = (2.0 * 0.75 * WEIGHT * 0.25 + 6000.0 * 2.25) / (2.0 * 0.75 * WEIGHT * 1.5)
+    for dimension in (2, 3):
+        path = solved(tied_stack(dimension), associated_only=False).non_associated
+        assert path.finished
+        assert path.load == pytest.approx(expected, rel=1e-5)
+    path = solved(prestressed(10e3), associated_only=False).non_associated
+    assert path.load == pytest.approx((WEIGHT + 10e3) * 0.25 / WEIGHT, rel=1e-5)
+    path = solved(arch(1.5e4), associated_only=False).non_associated
+    assert path.load == pytest.approx(solved(arch(1.5e4)).associated.multiplier, rel=1e-4)
+
+
+def test_the_path_says_what_it_does_not_know_of_ties():
+    case = tied_stack(2)
+    case["tie"][0]["compression"] = True
+    found = solved(case, associated_only=False)
     assert found.non_associated is None
-    assert "knows no ties" in found.no_path
+    assert "only those that pull" in found.no_path
+
+
+def test_states_of_the_path_are_held_with_their_ties():
+    """Put into the simulation the tie has its force and what it was stretched for good, and all forces balance."""
+    made = scene(tied_stack(2))
+    sim = simulation(tied_stack(2), "fixed")
+    structure = structure_of(made.model, sim.joints)
+    path = trace(structure, friction_of(sim.joints, law_of(made.case)))
+    start = WarmStart("path", path.load, path.normal, path.shear, path.gaps, path.displacements, 0.0)
+    start.put_into(sim)
+    sim.advance(1, slot.HOLD_LOAD)
+    stretched, longer, force = sim.links[0].state[0]
+    assert force == pytest.approx(6000.0, rel=1e-6)
+    assert stretched > 0.0
+    assert force == pytest.approx(5e6 * (longer - stretched), rel=1e-6)
+    assert sim.unbalanced < 1e-5
 
 
 def pendulum(k: float) -> np.ndarray:
