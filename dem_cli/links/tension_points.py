@@ -60,6 +60,12 @@ class TensionPoints(NamedTuple):
         beyond = self.elastic_force(displacements, plastic) - self.most
         return plastic + np.maximum(beyond, 0.0) / self.stiffness
 
+    @property
+    def longest_elastic(self) -> float:
+        """The longest way of any from its first force to its largest, where that has an end."""
+        ends = np.isfinite(self.most)
+        return float(((self.most - self.first) / self.stiffness)[ends].max(initial=0.0))
+
     def dead(self, yielding: np.ndarray) -> np.ndarray:
         """Forces on the free degrees of freedom of the ties that yield, (n_free,)."""
         return -(self.elongation.T @ np.where(yielding, self.most, 0.0))

@@ -106,6 +106,7 @@ class ImplicitHistory:
     def __post_init__(self) -> None:
         self._reached = 0.0  # displacement at `low`
         self._origin = self._elastic = self._first_step = 0.0
+        self._stretched = 0.0  # displacement at which ties yield that cross what opens
 
     def search(self, bound: float, resolution: float, small: bool = False) -> LoadHistory | None:
         """The load that fails, below a bound, to a relative width; None where it was not found.
@@ -171,6 +172,8 @@ class ImplicitHistory:
         self._elastic = compliance(problem, self.state)
         unit = float(np.abs(problem.elastic().solve(problem.live)).max())
         self._first_step = self.settings.first_step * unit
+        if problem.ties is not None:
+            self._stretched = self.settings.far_of_ties * problem.ties.longest_elastic / unit
         return self._elastic > 0.0
 
     def _settled(self, state: State) -> State | None:
@@ -193,7 +196,7 @@ class ImplicitHistory:
         problem, settings, state, reached = self.problem, self.settings, self.state, self._reached
         assert state is not None
         step, last, past = self._first_step, 0.0, list[Resisted]()
-        far = max(settings.far * reached, settings.far_per_load * load)
+        far = max(settings.far * reached, settings.far_per_load * load, self._stretched)
         for steps in range(1, settings.most_steps + 1):
             taken = self._step(state, load / problem.live_scale, step, step / last if last else 0.0)
             if taken is None:

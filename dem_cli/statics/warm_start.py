@@ -74,8 +74,8 @@ def find_start(job: Job, sim: Simulation, limits: RigidLimits) -> tuple[WarmStar
         report |= {"kind": GRAVITY, "note": limits.why_not}
     if kind != GRAVITY and sim.integrates:
         report |= {"kind": GRAVITY, "note": "a state found elsewhere is of rigid joints, these have a stiffness"}
-    if kind != GRAVITY and sim.links:
-        report |= {"kind": GRAVITY, "note": "a state found elsewhere knows no forces of ties and bars"}
+    if kind != GRAVITY and sim.links and (kind == LIMIT or limits.path is None):
+        report |= {"kind": GRAVITY, "note": "a state found elsewhere knows no forces of these ties and bars"}
     if kind != GRAVITY and getattr(job.case.analysis, "step", None) is not None:
         report |= {"kind": GRAVITY, "note": "every step of the load is asked for"}
     if report["kind"] == GRAVITY:

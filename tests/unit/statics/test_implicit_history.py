@@ -50,6 +50,19 @@ def test_exact_loads(name, load, bound):
     assert max(level.load for level in held.levels if level.verdict == HOLDS) == held.low
 
 
+@pytest.mark.parametrize("yields", [2e3, 6e3, 2e4])
+def test_ties_stretch_until_they_yield(yields):
+    """A block of 0.5 × 2 m on an anchor at its top: λ W h/2 = W b/2 + N h, long after the joint has opened."""
+    tie = {"ends": [[0.0, 2.0], [-4.0, 2.0]], "anchored": True, "stiffness": 1e6, "yield_force": yields}
+    history = history_of(tables(BASE, block("b", rectangle(0, 0, 0.5, 2)), friction=3.0, tie=[tie]))
+    weight = 2000.0 * 9.81
+    load = 0.25 + 2.0 * yields / weight
+    held = history.search(1.05 * load, RESOLUTION)
+    assert held.low == pytest.approx(load, rel=RESOLUTION)
+    assert held.high == pytest.approx(load, rel=RESOLUTION)
+    assert held.held[-1].normal.shape == (2,)  # of joints alone
+
+
 def test_what_is_held_is_in_equilibrium_under_the_law():
     history = history_of(CASES / "arch_21_mu040.toml")
     held = history.search(0.06, RESOLUTION)
