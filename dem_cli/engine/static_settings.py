@@ -130,7 +130,9 @@ class ImplicitHistorySettings:
     at_rest: float = 1e-4  # force of the viscosity, in own weights, of an equilibrium
     far: float = 2.5  # displacements of the last equilibrium, beyond which a load may be seen to fail, and
     far_per_load: float = 5.0  # elastic ones, and
-    far_of_ties: float = 15.0  # times as far as the longest way of a tie before it yields: at 3 loads were 1.6 % too low
+    far_of_ties: float = (
+        15.0  # times as far as the longest way of a tie before it yields: at 3 loads were 1.6 % too low
+    )
     flat: float = 0.7  # of what resistance lacked at half the displacement: so much still lacks where the load fails
     tau: float = 3e-4  # of the first products of a step, over the square of the largest normal force
     other_tau: tuple[float, ...] = (3e-6, 1e-2, 1e-7, 1.0)  # the same where steps fail, one after the other

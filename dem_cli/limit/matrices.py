@@ -117,4 +117,4 @@ def links_of(model: Model) -> Links:
     elongation = csr_matrix(elongations(springs, model.fixed))
     if len(model.restrained):
         elongation = csr_matrix(elongation @ diags((~model.held_columns).astype(float)))
-    return Links(elongation, limits, tension_points(model.links, model))
+    return Links(elongation, limits, tension_points(model.links, model.fixed, model.held))

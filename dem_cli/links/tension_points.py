@@ -19,8 +19,6 @@ from dem_cli.links.matrices import elongations, free_columns, joined
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
-    from dem_cli.model.model import Model
-
 
 class TensionPoints(NamedTuple):
     """Ties of a structure; forces and lengths in the units of who made them."""
@@ -71,17 +69,21 @@ class TensionPoints(NamedTuple):
         return -(self.elongation.T @ np.where(yielding, self.most, 0.0))
 
 
-def tension_points(links: Iterable[LinkArrays], model: Model) -> TensionPoints | None:
-    """The links of a model as points, in SI units; None where one of them is more than a tie that only pulls."""
+def tension_points(links: Iterable[LinkArrays], fixed: np.ndarray, held: np.ndarray) -> TensionPoints | None:
+    """Links as points, in SI units; None where one of them is more than a tie that only pulls.
+
+    fixed: blocks that cannot move, (n_blocks,) bool; held: motions that loads do not change, (n_blocks, n_dof) bool.
+    """
     found = [link.only_pulling() for link in links]
     if not found or any(one is None for one in found):
         return None
     pulling = [one for one in found if one is not None]
-    springs = joined((one.springs for one in pulling), model.dead_loads.shape[1])
-    held = np.vstack([model.held, np.ones((1, model.held.shape[1]), bool)])[springs.blocks]  # the last: a fixed point
-    springs = springs._replace(motion=np.where(held, 0.0, springs.motion))
-    columns = np.where(held, -1, free_columns(springs.blocks, model.fixed, model.held.shape[1]))
+    n_dof = held.shape[1]
+    springs = joined((one.springs for one in pulling), n_dof)
+    still = np.vstack([held, np.ones((1, n_dof), bool)])[springs.blocks]  # the last one: of a fixed point
+    springs = springs._replace(motion=np.where(still, 0.0, springs.motion))
+    columns = np.where(still, -1, free_columns(springs.blocks, fixed, n_dof))
     first, most = (np.concatenate(parts) for parts in zip(*(one[1:] for one in pulling), strict=True))
     return TensionPoints(
-        springs.stiffness, first, most, elongations(springs, model.fixed), springs.motion, columns
+        springs.stiffness, first, most, elongations(springs, fixed), springs.motion, columns
     )  # fmt: skip
