@@ -64,14 +64,13 @@ class Stopwatch:
 
     def __enter__(self) -> Stopwatch:
         self.last = time.process_time()
-        hard = int(self.last + 5 * self.limit + 120)  # for loops that never come back to Python
-        resource.setrlimit(resource.RLIMIT_CPU, (hard, resource.RLIM_INFINITY))
-        signal.signal(signal.SIGPROF, self.look)
+        self.handler = signal.signal(signal.SIGPROF, self.look)
         signal.setitimer(signal.ITIMER_PROF, 1.0, 1.0)
         return self
 
     def __exit__(self, *_: object) -> None:
         signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, self.handler)
         self.used += time.process_time() - self.last
 
     def look(self, _: int, frame: FrameType | None) -> None:
@@ -193,6 +192,8 @@ def work(kind: str, seeds: range, pipe: int, limit: float, keep: Path) -> None:
         os.chdir(name)  # reports of internal errors go there
         for seed in seeds:
             print(json.dumps([seed]), file=tell)
+            most = int(time.process_time() + 5 * limit + 120)  # for loops that never come back to Python
+            resource.setrlimit(resource.RLIMIT_CPU, (most, resource.RLIM_INFINITY))
             kept = keep / f"{kind}-{seed}.toml"
             kept.write_text(text := text_of(kind, seed, pool), encoding="utf-8")
             ended, wrong, used = outcome(kind, text, Path(name), limit)

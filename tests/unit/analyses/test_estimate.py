@@ -23,9 +23,8 @@ def test_blocks_that_deform_on_joints_of_any_stiffness():
     """On rigid joints it said: kn h/E inf."""
     young = "materials.peperino.young=2e9"
     assert rows("wall_21", young)["with blocks dry"].endswith(" Pa/m, that of the blocks, on rigid joints")
-    given = rows("wall_21", young, "joints.dry.kn=1e11")[
-        "with blocks dry"
-    ]  # from half of 0.0175 m, at the foot, to heads 0.04 m apart
+    given = rows("wall_21", young, "joints.dry.kn=1e11")["with blocks dry"]
+    # from half of 0.0175 m, at the foot, to heads between blocks of 0.04 m
     assert given.endswith(" Pa/m, kn h/E 0.4375 to 2")
 
 
