@@ -36,7 +36,7 @@ def elevation(d: Draw, gable: bool = True) -> Tables:
 
 def stones(d: Draw, **keys: Any) -> Tables:
     """A wall of a pattern: by its size or an outline."""
-    shape = {"outline": outline(d)} if d.random() < 0.3 else {"size": [d.size(1.0, 2.2), d.size(0.7, 1.5)]}
+    shape = {"outline": outline(d)} if d.random() < 0.3 else {"size": [d.size(0.9, 1.6), d.size(0.6, 1.2)]}
     return (
         keys
         | shape
@@ -51,7 +51,7 @@ def wall(d: Draw) -> Tables:
     if d.random() < 0.2:
         table |= {"outline": outline(d)} | elevation(d, gable=False)
     else:
-        table |= {"courses": d.randint(1, 6), "blocks_per_course": d.randint(1, 5)} | elevation(d)
+        table |= {"courses": d.randint(1, 5), "blocks_per_course": d.randint(1, 4)} | elevation(d)
         table |= d.some(0.1, ends="toothed") | d.some(0.15, first="full")
     table |= d.some(0.3, bond=d.choice(["stack", "running", "english", "flemish", "english-garden"]))
     if d.space and d.random() < 0.4:
@@ -153,7 +153,7 @@ def building(d: Draw) -> Tables:
         for name, axis in plan[: d.randint(1, 4)]
     ]
     floor = {"id": "floor", "z": 0.8, "on": ["s", "n"], "kind": d.choice(["rigid", "beams"])}
-    table: Tables = {"block": [0.6, 0.4], "thickness": 0.4, "courses": d.randint(2, 4), "walls": walls}
+    table: Tables = {"block": [0.6, 0.4], "thickness": 0.4, "courses": d.randint(2, 3), "walls": walls}
     pattern = {
         "kind": "coursed",
         "spacing": [0.4, 0.03],
@@ -174,7 +174,7 @@ def coursed(d: Draw) -> Tables:
 
 
 def section(d: Draw) -> Tables:
-    table: Tables = {"size": [0.7, d.size(0.6, 1.5)], "course": [0.25, 0.03], "face": [0.2, 0.03]}
+    table: Tables = {"size": [0.7, d.size(0.6, 1.2)], "course": [0.25, 0.03], "face": [0.2, 0.03]}
     return table | {"cell": 0.2, "through": d.choice([0, 2])}
 
 
@@ -183,7 +183,7 @@ STRUCTURES: dict[str, Callable[[Draw], Tables]] = {
     "column": column,
     "arch": arch,
     "bridge": bridge,
-    "voronoi-wall": lambda d: stones(d, cells=d.randint(4, 20), relax=d.choice([0, 3, 10])),
+    "voronoi-wall": lambda d: stones(d, cells=d.randint(4, 12), relax=d.choice([0, 3, 10])),
     "coursed-wall": coursed,
     "herringbone-wall": lambda d: stones(d, block=[d.choice([0.4, 0.6]), 0.2]) | d.some(0.3, bond="rows"),
     "wall-section": section,
