@@ -28,7 +28,7 @@ def joint(d: Draw) -> Tables:
     laws += [{"law": "barton", "jrc": 8.0, "jcs": 5e7, "residual_angle_deg": 28.0}, {"law": "elastic", **stiff}]
     laws += [{"law": "slip-degrading", **friction, "residual": 0.7, "slip_scale": 0.01}]
     laws += [{"law": "rate-dependent", **friction, "friction_dynamic": 0.25, "velocity": 0.05}]
-    table = friction if d.random() < 0.7 else d.choice(laws)
+    table = friction if d.random() < 0.85 else d.choice(laws)
     profile = {"sides": d.randint(2, 4), "aperture": 1e-4} | d.some(0.3, over="face") | d.some(0.3, only="bed")
     return (
         table
