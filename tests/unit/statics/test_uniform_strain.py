@@ -193,6 +193,20 @@ def test_a_loaded_block_that_turns_keeps_its_strain(dimension):
     assert sim.bodies.modes == pytest.approx(before, rel=within, abs=1e-12 * np.abs(before).max())
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_blocks_that_are_moved_back_keep_their_strain(dimension):
+    """Closure of joints with kn = "auto" that is taken back: a settlement of such blocks ended with an internal error."""
+    made = scene(column(dimension, n=1))
+    sim = Simulation(made.model, law_of(made.case), joint_properties(made.case, made.model), "large")
+    sim.bodies.modes[1, 0], before = 1e-3, sim.bodies.positions.copy()
+    motion = np.zeros_like(sim.bodies.velocities)
+    motion[1, :dimension] = 2e-6
+    moves.shift(sim, motion)
+    assert (sim.bodies.positions - before)[1] == pytest.approx(2e-6, rel=1e-6)
+    assert (sim.taken_back == motion[:, : sim.taken_back.shape[1]]).all()
+    assert sim.bodies.modes[1, 0] == 1e-3
+
+
 @pytest.mark.parametrize(("ratio", "finite_elements"), [(0.05, 0.9626), (1.0, 0.5614)])
 def test_wall_is_as_much_softer_as_finite_elements_say(ratio, finite_elements):
     """51 blocks with elastic joints of kn = ratio × E/h, pushed sideways: rigid blocks move less by that factor.
