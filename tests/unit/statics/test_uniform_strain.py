@@ -195,7 +195,7 @@ def test_a_loaded_block_that_turns_keeps_its_strain(dimension):
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_blocks_that_are_moved_back_keep_their_strain(dimension):
-    """Closure of joints with kn = "auto" that is taken back: a settlement of such blocks ended with an internal error."""
+    """Closure of rigid joints that is taken back: a settlement of such blocks ended with an internal error."""
     made = scene(column(dimension, n=1))
     sim = Simulation(made.model, law_of(made.case), joint_properties(made.case, made.model), "large")
     sim.bodies.modes[1, 0], before = 1e-3, sim.bodies.positions.copy()
