@@ -58,7 +58,7 @@ class OutOfTime(BaseException):
 
 
 class Stopwatch:
-    """Raises OutOfTime after `limit` CPU seconds outside of the compiler; looks once a second."""
+    """Raises OutOfTime after `limit` CPU seconds outside of the compiler; looks once a second, or more often."""
 
     def __init__(self, limit: float) -> None:
         self.limit, self.used, self.last = limit, 0.0, 0.0
@@ -66,7 +66,8 @@ class Stopwatch:
     def __enter__(self) -> Stopwatch:
         self.last = time.process_time()
         self.handler = signal.signal(signal.SIGPROF, self.look)
-        signal.setitimer(signal.ITIMER_PROF, 1.0, 1.0)
+        often = min(1.0, self.limit)
+        signal.setitimer(signal.ITIMER_PROF, often, often)
         return self
 
     def __exit__(self, *_: object) -> None:
