@@ -179,8 +179,9 @@ def _deformation(case: Case, sim: Simulation) -> Rows:
     for k, name in enumerate(properties.names):
         here = (named == k) & (shares > 0.0)
         if here.any():
-            kn, share = (_range(values[here]) for values in (together, shares))
-            rows.append((f"with blocks {name}", f"kn {kn} Pa/m, kn h/E {share}"))
+            rigid = not np.isfinite(shares[here]).all()  # kn = "auto": then all joints of this name are
+            share = "that of the blocks, on rigid joints" if rigid else f"kn h/E {_range(shares[here])}"
+            rows.append((f"with blocks {name}", f"kn {_range(together[here])} Pa/m, {share}"))
     return rows
 
 

@@ -50,7 +50,7 @@ class Selection(CaseModel):
         """The same as messages have it."""
         if self.structure is None:
             return show(self.block)
-        return (self.selected or "").replace(self.structure, show(self.structure), 1)
+        return structure_words(show(self.structure), self.course) or ""
 
 
 class GroupMember(CaseModel):

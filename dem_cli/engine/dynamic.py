@@ -330,7 +330,9 @@ class DynamicSimulation(Simulation):
         self.control[slot.LIVE_FACTOR] = acceleration / gravity if gravity > 0.0 else 0.0
 
     def accelerations(self, blocks: np.ndarray) -> np.ndarray:
-        """Of the last step, relative to the base [m/s², rad/s²], (n, d + r)."""
+        """Of the last step, relative to the base [m/s², rad/s²], (n, d + r); until `begin` as in any other."""
+        if not self.real:
+            return super().accelerations(blocks)
         bodies, shape, columns = self.bodies, self.shape, slice(self.model.rotations.stop)
         fields = (field.reshape(bodies.velocities.shape)[blocks, columns] for field in (bodies.means, bodies.pulled))
         means, kicked = fields

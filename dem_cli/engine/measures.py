@@ -123,12 +123,14 @@ def live_travel(sim: Simulation) -> float:
 
 
 def dead_scale(sim: Simulation) -> float:
-    """What all dead loads would do to the softest joint or link [m]: no elastic displacement is larger by much."""
+    """What all dead loads would do to the softest joint, block or link [m]: nothing elastic moves by much more."""
     joints = sim.joints
     total = np.sqrt((sim.loads.dead[sim.free, : sim.model.dimension] ** 2).sum(axis=1)).sum()
     if not len(joints.kn):
         return link_scale(sim) if sim.links else sim.smallest
     stiffness = np.add.reduceat(np.minimum(joints.kn, joints.ks), joints.starts[:-1])
+    if sim.model.n_modes:
+        stiffness = np.concatenate([stiffness, sim.shape.mode_stiffness[sim.free].ravel()])
     return max(float(total / stiffness[stiffness > 0.0].min()), link_scale(sim))
 
 

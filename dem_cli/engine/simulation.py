@@ -333,7 +333,14 @@ class Simulation:
     @property
     def load(self) -> float:
         """Internal load multiplier (times live_scale: the one users know)."""
-        return self.control[slot.LIVE_FACTOR] / self.control[slot.DEAD_FACTOR]
+        return self.over_share(self.control[slot.LIVE_FACTOR])
+
+    def over_share(self, load: float) -> float:
+        """An internal multiplier over the share of the dead loads: without end on a table that stands upright."""
+        share = self.control[slot.DEAD_FACTOR]
+        if share > 0.0:
+            return load / share
+        return float(np.copysign(np.inf, load)) if load else 0.0
 
     @property
     def mean_load(self) -> float:

@@ -44,9 +44,10 @@ def edges(topology: Topology) -> tuple[np.ndarray, np.ndarray]:
 
 
 def normals(vertices: np.ndarray, topology: Topology) -> np.ndarray:
-    """Outward unit normals of the faces, Newell's."""
+    """Outward unit normals of the faces, Newell's; zero of those without an area."""
     areas = solids.face_areas(vertices, topology)
-    return areas / np.linalg.norm(areas, axis=1)[:, None]
+    sizes = np.linalg.norm(areas, axis=1)[:, None]
+    return areas / np.where(sizes > 0.0, sizes, 1.0)
 
 
 def inner_faces(vertices: np.ndarray, topology: Topology, part_blocks: np.ndarray, sizes: np.ndarray) -> np.ndarray:

@@ -102,7 +102,7 @@ def follow(
         before = measures.largest_displacement(sim)
         way.slowed = _creep(sim, way.chunk, way.ceiling, budget) or (way.slowed and sim.rate < rate)
         moved = measures.largest_displacement(sim)
-        load = sim.mean_load / sim.dead_share
+        load = sim.over_share(sim.mean_load)
         way.enter(load, failure, post_peak)
         done = moved >= until or sim.steps > way.start + post_peak.patience
         shown = load if way.slowed or sim.load > way.ceiling else sim.load  # that of an instant may be inertia

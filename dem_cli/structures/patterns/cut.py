@@ -70,8 +70,11 @@ class _Cut:
         return self._whole(found)
 
     def _whole(self, pieces: Sequence[list[Loop]]) -> Tiling:
-        courses = [course for course, some in zip(self.tiling.courses, pieces, strict=True) for _ in some]
-        loops = [self._with_new_corners(loop) for some in pieces for loop in some]
+        loops, courses = [], []
+        for course, some in zip(self.tiling.courses, pieces, strict=True):
+            found = [_without_ways_back(self._with_new_corners(loop)) for loop in some]
+            loops += [loop for loop in found if loop]
+            courses += [course for loop in found if loop]
         idle = self._idle(loops)
         return Tiling(np.array(self.corners), [tuple(i for i in loop if i not in idle) for loop in loops], courses)
 
@@ -178,6 +181,17 @@ class _Cut:
             inner = self._all_between(min(a, b), max(a, b))
             found += [*(inner if a < b else inner[::-1]), b]
         return found[:-1]
+
+
+def _without_ways_back(loop: Loop) -> Loop:
+    """A loop that nowhere goes to a corner and straight back; (): nothing else is left of a piece without area."""
+    found = list(loop)
+    while len(set(found)) < len(found):
+        back = [k for k in range(len(found)) if found[k - 1] == found[(k + 1) % len(found)]]
+        if not back:
+            break
+        found = [i for k, i in enumerate(found) if k not in (back[0], (back[0] - 1) % len(found))]
+    return tuple(found) if len(found) > 2 else ()
 
 
 def _left_of(along: np.ndarray, arms: np.ndarray, gap: float) -> np.ndarray:

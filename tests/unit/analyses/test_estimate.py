@@ -19,6 +19,15 @@ def rows(name: str, *overrides: str) -> dict[str, str]:
     return dict(describe(loaded.case, api.build_model(loaded)))
 
 
+def test_blocks_that_deform_on_joints_of_any_stiffness():
+    """On rigid joints it said: kn h/E inf."""
+    young = "materials.peperino.young=2e9"
+    assert rows("wall_21", young)["with blocks dry"].endswith(" Pa/m, that of the blocks, on rigid joints")
+    given = rows("wall_21", young, "joints.dry.kn=1e11")["with blocks dry"]
+    # from half of 0.0175 m, at the foot, to heads between blocks of 0.04 m
+    assert given.endswith(" Pa/m, kn h/E 0.4375 to 2")
+
+
 def test_wall_of_21_blocks(monkeypatch):
     monkeypatch.setattr(loops, "make_advance", None)  # the stepping loop is not even made
     loops.compiled_advance.cache_clear()

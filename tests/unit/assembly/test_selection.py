@@ -7,6 +7,7 @@ import pytest
 
 from dem_cli.analyses.settlement import SupportMovement
 from dem_cli.assembly.assemble import assembly
+from dem_cli.case.selection import Selection
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.engine.monitors import Monitors
 from dem_cli.errors import CaseError
@@ -87,6 +88,13 @@ WRONG_GROUPS = [
     ("a", ["left-1-1", "lefft-1-1"], (1,), "unknown block 'lefft-1-1', did you mean 'left-1-1'?"),
     ("a", [{"box": [[90, 0], [91, 1]]}], (0, "box"), "no block has its centroid in it"),
 ]
+
+
+@pytest.mark.parametrize("name", ["left", "s", "c", "structure", "1"])
+def test_a_structure_is_quoted_whatever_its_name(name):
+    """Of one called 's' messages said 's'tructure s."""
+    assert Selection(structure=name).said == f"structure '{name}'"
+    assert Selection(structure=name, course=(1, 2)).said == f"structure '{name}' course 1 to 2"
 
 
 @pytest.mark.parametrize(("where", "table", "says"), WRONG, ids=[row[0] for row in WRONG])

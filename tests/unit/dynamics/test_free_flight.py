@@ -29,11 +29,16 @@ FREE = 1  # number of the block that flies
 UNDAMPED = Damping()
 
 
-def flying(vertices, dt: float, damping: Damping = UNDAMPED) -> DynamicSimulation:
-    """A block without weight, far from its support, before its first step; joints are not looked for on the way."""
+def settling(vertices, damping: Damping = UNDAMPED) -> DynamicSimulation:
+    """A block without weight, far from its support, before the motion begins."""
     block = {"id": "block", "vertices": [list(map(float, corner)) for corner in vertices]}
     made = scene(tables(BASE, block, dimension=3, gravity=0.0, analysis={"kind": "gravity"}))
-    sim = DynamicSimulation(made.model, law_of(made.case), joint_properties(made.case, made.model, 1e5), damping)
+    return DynamicSimulation(made.model, law_of(made.case), joint_properties(made.case, made.model, 1e5), damping)
+
+
+def flying(vertices, dt: float, damping: Damping = UNDAMPED) -> DynamicSimulation:
+    """The same block before its first step; joints are not looked for on the way."""
+    sim = settling(vertices, damping)
     sim.begin(dt)
     sim.control[slot.TRAVEL_LIMIT] = np.inf
     return sim
@@ -205,6 +210,14 @@ def test_samples_are_those_of_the_motion():
     assert changes == pytest.approx(accelerations[1:-1, 3:], abs=1e-4)
     assert np.abs(accelerations[:, 3:]).max() > 1.0
     assert sim.accelerations(np.array([FREE]))[0] == pytest.approx(accelerations[-1], rel=1e-12)
+
+
+def test_before_the_motion_accelerations_are_those_of_the_path_to_rest():
+    """A monitor in a history of a structure in space that did not stand: AttributeError 'turns_of_means'."""
+    sim = settling(WEDGE)
+    sim.bodies.unbalanced[FREE] = force = np.array([1.0, 0.0, -2.0, 0.0, 3.0, 0.0])
+    assert (sim.accelerations(np.array([FREE]))[0] == force * sim.loads.inverse_masses[FREE]).all()
+    assert sim.loads.inverse_masses[FREE].all()
 
 
 def test_supports_go_with_all_six_velocities():

@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from engine import simulation
 from studies.space.structures import box, tables
 
 from dem_cli.engine import measures
 from dem_cli.geometry.rotation import matrices
+from dem_cli.kernels import records as slot
 
 MOVED, TURNED = np.array([0.4, -0.1, 0.2]), np.array([0.2, -0.3, 0.5])
+
+
+def test_load_of_a_table_that_stands_upright():
+    """A creep of joints that hold whatever comes turns it by 90°: dividing by zero was a warning on the terminal."""
+    ground, cube = box("ground", (-1.0, -1.0, -0.3), (1.0, 1.0, 0.0), fixed=True), box("b", (0.0,) * 3, (1.0,) * 3)
+    sim = simulation(tables(ground, cube))
+    for live, dead, load in ((0.6, 0.8, 0.75), (1.0, 0.0, np.inf), (-1.0, 0.0, -np.inf), (0.0, 0.0, 0.0)):
+        sim.control[slot.LIVE_FACTOR], sim.control[slot.DEAD_FACTOR] = live, dead
+        assert sim.load == pytest.approx(load, rel=1e-15)
 
 
 def test_points_in_space_stay_on_the_first_block():

@@ -71,6 +71,14 @@ def test_edges_of_a_box_once():
     assert part.tolist() == [0] * 12 + [1] * 12
 
 
+def test_a_face_without_an_area_has_no_normal():
+    """A drum 1e19 m high: its sides were divided by zero, with a warning of Python before the refusal."""
+    solid = box([0, 0, 0], [1, 2, 3])
+    flat = solid.vertices * [1.0, 1.0, 0.0]
+    found = spatial_parts.normals(flat, topology_of_polyhedra([solid]))
+    assert sorted(map(tuple, np.abs(found))) == [(0.0, 0.0, 0.0)] * 4 + [(0.0, 0.0, 1.0)] * 2
+
+
 def test_narrowest_extents_in_space():
     drum = prism(np.array([[np.cos(a), np.sin(a)] for a in np.arange(8) * np.pi / 4]), 0.0, 5.0)
     solids = [box([0, 0, 0], [3, 0.2, 2]), box([0, 0, 0], [0.3, 0.3, 9]), drum]
