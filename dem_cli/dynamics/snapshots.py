@@ -70,16 +70,19 @@ class Snapshots:
         sampled: steps from one sample of the monitors to the next. Looks fall on samples, so that both see one peak.
         """
         settings, sim = self.settings, self.sim
-        self.every = sampled * max(1, round(settings.look / (sampled * sim.dt)))
+        self.every = self.close = sampled * max(1, round(settings.look / (sampled * sim.dt)))
         self.last, self.last_turns, self.last_step = self._places(), self._turns(), sim.steps  # of the last one kept
         self.farthest = _largest(self.last)  # [m]
+        self.seen = sim.steps, self.farthest, 0.0, 0.0  # at the last look: step, and as `look` has them
         of_ground = settings.per_cycle * frequency_of(self.ground, duration)
         self.per_second = min(max(settings.per_second, of_ground), settings.most_per_second)
         self.times = self._until(duration, duration, self.per_second)
+        self.spaced = self.close * self._times_as_far()
 
     def collapsed(self, end: float) -> None:
         """A collapse is followed from now until `end` [s]."""
         self.stage, self.ahead, left = "collapse", None, end - self.sim.time
+        self.spaced = self.close
         self.times = self._until(end, left, max(self.per_second, self.settings.per_second_of_collapse))
         self.look()
 
@@ -95,16 +98,46 @@ class Snapshots:
         moved, since = _largest(places), sim.dt * (sim.steps - self.last_step)
         if self.track.frames == 0 or not math.isfinite(moved) or since == 0.0:
             return
-        record, self.farthest = moved > self.farthest, max(moved, self.farthest)
-        away = _largest(places - self.last)
+        record, away = moved > self.farthest, _largest(places - self.last)
+        turned = largest_angle_between(self._turns(), self.last_turns)
+        near, self.farthest = self._near(moved, away, turned), max(moved, self.farthest)
         still = self.farthest < self.settings.swing * self.visible
-        if self.times.due(sim.time + 0.5 * sim.dt, since + 0.5 * sim.dt, still) or self._swung(away):
+        if self.times.due(sim.time + 0.5 * sim.dt, since + 0.5 * sim.dt, still) or self._swung(away, turned):
             if self.ahead is not None and not record:
                 self._keep(self.ahead)
             self.ahead, self.last, self.last_turns, self.last_step = None, places, self._turns(), sim.steps
+            self.seen, since = (sim.steps, moved, 0.0, 0.0), 0.0
             self._keep(self._frame())
         elif record and self.stage == "shaking":
             self.ahead = self._frame()
+        self.every = self.close if near or self._due_before(since, still) else self.spaced
+
+    def _due_before(self, since: float, still: bool) -> bool:
+        """Whether a snapshot is due before a look that is far ahead. since: the last one, as `Intervals.due` has it."""
+        before = (self.spaced - self.close + 0.5) * self.sim.dt
+        return self.spaced == self.close or self.times.due(self.sim.time + before, since + before, still)
+
+    def _times_as_far(self) -> int:
+        """How many times as far apart looks may be where nothing is near: a part of the time between snapshots."""
+        if self.wanted is not None:
+            return 1
+        between = self.settings.between / (self.per_second * self.close * self.sim.dt)
+        return max(1, min(int(between), self.settings.spaced))
+
+    def _near(self, moved: float, away: float, turned: float) -> bool:
+        """Whether a block may go farther than ever, or by a swing, before a look that is far ahead.
+
+        Twice what was seen to grow since the last look is how far it may come.
+        """
+        (step, *before), now = self.seen, (moved, away, turned)
+        self.seen = self.sim.steps, *now
+        if self.spaced == self.close:
+            return True
+        ahead = 2.0 * self.spaced / max(self.sim.steps - step, 1)
+        size = max(self.farthest, self.visible)
+        moved, away, turned = (one + ahead * max(one - was, 0.0) for one, was in zip(now, before, strict=True))
+        goes = moved > self.farthest + self.settings.trifle * size or away > self.settings.swing * size
+        return goes or turned > self.settings.turn
 
     def _places(self) -> np.ndarray:
         """Displacements of the free blocks [m], (n_free, d)."""
@@ -114,16 +147,14 @@ class Snapshots:
     def _turns(self) -> np.ndarray:
         return self.sim.bodies.orientations.take(self.sim.free, axis=0)
 
-    def _swung(self, away: float) -> bool:
+    def _swung(self, away: float, turned: float) -> bool:
         """Whether a block moved or turned so far since the last snapshot that it would be lost between even times.
 
-        away: how far one moved at most [m].
+        away: how far one moved at most [m]; turned: how far one turned [rad].
         """
         if self.wanted is not None or self.room <= 0:
             return False
-        if away > self.settings.swing * max(self.farthest, self.visible):
-            return True
-        return largest_angle_between(self._turns(), self.last_turns) > self.settings.turn
+        return away > self.settings.swing * max(self.farthest, self.visible) or turned > self.settings.turn
 
     def _frame(self) -> Frame:
         self.sim.show_base(self.ground.along(self.sim.time), self.gravity)
