@@ -90,7 +90,8 @@ class FreshCase:
     def dome(self) -> str:
         """A dome on its drum."""
         return (
-            f'[[structure]]\nid = "d"\nkind = "vault"\nshape = "dome"\nradius = 4.0\nthickness = {self.number(0.4, 0.6)}\n'
+            '[[structure]]\nid = "d"\nkind = "vault"\nshape = "dome"\nradius = 4.0\n'
+            f"thickness = {self.number(0.4, 0.6)}\n"
             f"courses = {self.random.randint(4, 7)}\nper_course = {self.random.choice((8, 12, 16))}\n"
             "oculus_radius = 0.6\ndrum = { width = 0.8, height = 1.0, courses = 2 }\n"
         )
