@@ -35,6 +35,10 @@ class EvenTimes:
         before, self.shown = self.shown, max(self.shown, int((self.times <= time).sum()))
         return self.shown > before
 
+    def left(self, _since: float, _still: bool) -> float:
+        """None is waited for: every look may be the one."""
+        return 0.0
+
 
 class Intervals:
     """Snapshots no further apart than an interval [s], or another one where all is still, and one at the end."""
@@ -44,7 +48,14 @@ class Intervals:
 
     def due(self, time: float, since: float, still: bool) -> bool:
         """Whether the last one is long ago [s], or this is the end; still: no block has moved visibly until now."""
-        return since >= (self.interval_still if still else self.interval) or time >= self.end
+        return since >= self._wanted(still) or time >= self.end
+
+    def left(self, since: float, still: bool) -> float:
+        """How long it is until the next one [s]."""
+        return self._wanted(still) - since
+
+    def _wanted(self, still: bool) -> float:
+        return self.interval_still if still else self.interval
 
 
 class Snapshots:
@@ -58,7 +69,7 @@ class Snapshots:
     def __init__(self, track: Track, sim: DynamicSimulation, ground: GroundMotion, gravity: float, wanted: int | None):
         self.track, self.sim, self.ground, self.gravity = track, sim, ground, gravity
         self.settings: SnapshotSettings = sim.settings.snapshots
-        self.wanted, self.stage, self.every = wanted, "shaking", 1
+        self.wanted, self.stage, self.due = wanted, "shaking", 0
         self.ahead: Frame | None = None  # of the largest displacement so far, where none is kept since
         self.drawn = sim.reference_positions[sim.free]
         self.visible = self.settings.visible * size_of(sim)
@@ -70,7 +81,7 @@ class Snapshots:
         sampled: steps from one sample of the monitors to the next. Looks fall on samples, so that both see one peak.
         """
         settings, sim = self.settings, self.sim
-        self.every = self.close = sampled * max(1, round(settings.look / (sampled * sim.dt)))
+        self.close = self.spaced = sampled * max(1, round(settings.look / (sampled * sim.dt)))
         self.last, self.last_turns, self.last_step = self._places(), self._turns(), sim.steps  # of the last one kept
         self.farthest = _largest(self.last)  # [m]
         self.seen = sim.steps, self.farthest, 0.0, 0.0  # at the last look: step, and as `look` has them
@@ -78,6 +89,7 @@ class Snapshots:
         self.per_second = min(max(settings.per_second, of_ground), settings.most_per_second)
         self.times = self._until(duration, duration, self.per_second)
         self.spaced = self.close * self._times_as_far()
+        self._look_again_after(self.close)
 
     def collapsed(self, end: float) -> None:
         """A collapse is followed from now until `end` [s]."""
@@ -94,6 +106,7 @@ class Snapshots:
 
     def look(self) -> None:
         """Keep this instant, or remember it."""
+        self._look_again_after(self.close)
         sim, places = self.sim, self._places()
         moved, since = _largest(places), sim.dt * (sim.steps - self.last_step)
         if self.track.frames == 0 or not math.isfinite(moved) or since == 0.0:
@@ -110,12 +123,14 @@ class Snapshots:
             self._keep(self._frame())
         elif record and self.stage == "shaking":
             self.ahead = self._frame()
-        self.every = self.close if near or self._due_before(since, still) else self.spaced
+        if not near:
+            looks = math.ceil(self.times.left(since, still) / (self.close * sim.dt) - 1e-6)
+            self._look_again_after(min(self.spaced, self.close * max(looks, 1)))
 
-    def _due_before(self, since: float, still: bool) -> bool:
-        """Whether a snapshot is due before a look that is far ahead. since: the last one, as `Intervals.due` has it."""
-        before = (self.spaced - self.close + 0.5) * self.sim.dt
-        return self.spaced == self.close or self.times.due(self.sim.time + before, since + before, still)
+    def _look_again_after(self, steps: int) -> None:
+        """The next look, on a sample."""
+        done = round(self.sim.time / self.sim.dt)
+        self.due = done - done % self.close + steps
 
     def _times_as_far(self) -> int:
         """How many times as far apart looks may be where nothing is near: a part of the time between snapshots."""
