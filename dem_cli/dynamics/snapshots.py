@@ -113,7 +113,7 @@ class Snapshots:
             return
         record, away = moved > self.farthest, _largest(places - self.last)
         turned = largest_angle_between(self._turns(), self.last_turns)
-        near, self.farthest = self._near(moved, away, turned), max(moved, self.farthest)
+        looks, self.farthest = self._looks_ahead(moved, away, turned), max(moved, self.farthest)
         still = self.farthest < self.settings.swing * self.visible
         if self.times.due(sim.time + 0.5 * sim.dt, since + 0.5 * sim.dt, still) or self._swung(away, turned):
             if self.ahead is not None and not record:
@@ -123,9 +123,8 @@ class Snapshots:
             self._keep(self._frame())
         elif record and self.stage == "shaking":
             self.ahead = self._frame()
-        if not near:
-            looks = math.ceil(self.times.left(since, still) / (self.close * sim.dt) - 1e-6)
-            self._look_again_after(min(self.spaced, self.close * max(looks, 1)))
+        due = math.ceil(self.times.left(since, still) / (self.close * sim.dt) - 1e-6)
+        self._look_again_after(self.close * max(min(looks, due), 1))
 
     def _look_again_after(self, steps: int) -> None:
         """The next look, on a sample."""
@@ -139,20 +138,17 @@ class Snapshots:
         between = self.settings.between / (self.per_second * self.close * self.sim.dt)
         return max(1, min(int(between), self.settings.spaced))
 
-    def _near(self, moved: float, away: float, turned: float) -> bool:
-        """Whether a block may go farther than ever, or by a swing, before a look that is far ahead.
-
-        Twice what was seen to grow since the last look is how far it may come.
-        """
+    def _looks_ahead(self, moved: float, away: float, turned: float) -> int:
+        """How many times `close` on no block goes farther than ever, or by a swing, at twice the rate seen last."""
         (step, *before), now = self.seen, (moved, away, turned)
         self.seen = self.sim.steps, *now
-        if self.spaced == self.close:
-            return True
-        ahead = 2.0 * self.spaced / max(self.sim.steps - step, 1)
+        passed, looks = max(self.sim.steps - step, 1) / self.close, self.spaced // self.close
         size = max(self.farthest, self.visible)
-        moved, away, turned = (one + ahead * max(one - was, 0.0) for one, was in zip(now, before, strict=True))
-        goes = moved > self.farthest + self.settings.trifle * size or away > self.settings.swing * size
-        return goes or turned > self.settings.turn
+        ends = self.farthest + self.settings.trifle * size, self.settings.swing * size, self.settings.turn
+        for one, was, end in zip(now, before, ends, strict=True):
+            if one > was and looks > 1:
+                looks = min(looks, int(0.5 * passed * (end - one) / (one - was)))
+        return max(looks, 1)
 
     def _places(self) -> np.ndarray:
         """Displacements of the free blocks [m], (n_free, d)."""
