@@ -83,7 +83,7 @@ direction = {direction}
 @pytest.mark.parametrize(
     ("dimension", "size", "direction", "steps"),
     [
-        (2, "[2.0, 2.0]\nthickness = 0.5", "[1.0, 0.0]", "120,000 to 1,400,000"),
+        (2, "[2.0, 2.0]\nthickness = 0.5", "[1.0, 0.0]", "120,000 to 2,000,000"),
         (3, "[2.0, 2.0, 0.5]", "[0.0, 1.0, 0.0]", "300,000 to 1,600,000"),
     ],
 )
