@@ -33,6 +33,7 @@ COMPILING = 700e6  # bytes while the loops of time histories in space are compil
 IN_SECONDS = ("time-history", "fragility")  # kinds that estimate_shaking.py knows
 VISIBLE = {"settlement": "supports move visibly", "modes": "the forces of gravity turn and shift with the blocks"}
 LARGE = "the load is raised from there, and may be “at least …, not above …”"  # of a structure that is large
+SOFTER = DEFAULT.load_search.softer
 BED = np.cos(np.pi / 4)  # a bed joint has its normal within 45° of the vertical
 
 
@@ -64,6 +65,7 @@ def describe(case: Case, model: Model) -> Rows:
         ("time step", _time_step(sim)),
         *_runs(case),
         *_path(case, sim),
+        *_beside(case, sim),
         *cost_of(case, sim, _of_property(sim)),
         ("memory", _memory(sim)),
         ("load", _load(case, model)),
@@ -253,6 +255,23 @@ def _path(case: Case, sim: Simulation) -> Rows:
         return []
     way = "its path" if DEFAULT.limit.of_path(blocks, d) is DEFAULT.limit else "a smoothed path"
     return [("path", f"one structure of {blocks:,} blocks: {way} leads next to failure, in a minute or two; {LARGE}")]
+
+
+def _beside(case: Case, sim: Simulation) -> Rows:
+    """Of a pushover: what is computed beside its failure load, which its cost holds."""
+    d, blocks = sim.model.dimension, largest_structure(sim.joints.blocks, sim.model.fixed)
+    if case.analysis.kind != "pushover" or not blocks:
+        return []
+    if sim.kinematics != "fixed":
+        softer = "" if sim.properties.given else f"the same loads once more on joints {SOFTER:g} times as soft"
+        return [("beside it", softer)] if softer else []
+    if sim.law.bonded or sim.properties.rough or sim.links or DEFAULT.limit.too_large(blocks, d):
+        return []
+    said = "the path of joints that do not dilate where limit analysis leaves the load open"
+    if d == 2 and blocks >= DEFAULT.implicit_history.blocks and not case.analysis.step:
+        said = "where friction takes part in the bound: an implicit history from gravity to failure"
+        said += ", and a path" if blocks <= DEFAULT.warm_start.beside_implicit else ""
+    return [("beside it", f"{said}; where two histories differ, the load is raised again in small steps")]
 
 
 def _memory(sim: Simulation) -> str:

@@ -1,12 +1,16 @@
-"""Estimate of what a run costs, for `dem check`: CPU seconds on one core as a range, and what compiling adds once.
+"""Estimate of what a run costs, for `dem check`: CPU seconds of this core as a range, and what compiling adds once.
 
-Ranges hold runs that were measured, on a core like that of docs/benchmarks.md. They are wide, as how many steps a
-structure takes to come to rest and to fail is not known before it does: nine in ten fresh cases should lie within.
+How many steps a structure takes to come to rest and to fail is not known before it does. Ranges hold nine in ten cases
+of `scripts/study costs`, which nothing was tuned to; how long a core takes for a loop of Python says how fast it is.
 """
 
 from __future__ import annotations
 
+import time
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
 
 from dem_cli.engine.clock import duration_words
 
@@ -37,19 +41,28 @@ class Span(NamedTuple):
         return f"{low} to {high} of CPU time on one core"
 
 
-START = Span(0.33, 0.65)  # s of every run beside its steps: what is imported, loaded, looked at and written
-STEPS = {  # kind of analysis -> fewest and most steps
-    "gravity": (400, 50_000),
-    "pushover": (30_000, 2_000_000),
-    "cycle": (10_000, 1_000_000),
-    "settlement": (15_000, 150_000),
-    "safety": (1_500, 60_000),  # each of its runs
-    "modes": (400, 50_000),
+LOOP = 42e-9  # s that a core like that of docs/benchmarks.md takes for a pass of a loop of Python
+PASSES = 200_000  # of that loop: 8 ms, as a core that others use as well is fast and slow by turns
+START = Span(0.33, 0.9)  # s of every run beside its steps: what is imported, loaded, looked at and written
+# Fewest and most steps, with all else that takes time counted as steps: limit analysis, paths, implicit histories.
+# Chosen by `scripts/study costs`, seeds 1 to 13 (28 November 2026, 0.18.0); docs/guide/warnings.md says how they hold.
+STEPS = {  # of a kind of analysis
+    "gravity": (400, 30_000),
+    "pushover": (40_000, 500_000),  # of courses, in the plane, on rigid joints in the geometry of the start
+    "cycle": (5_000, 300_000),
+    "settlement": (20_000, 500_000),
+    "safety": (1_500, 120_000),  # each of its runs
+    "modes": (400, 30_000),
 }
-IN_SPACE = {"pushover": (13_000, 1_000_000)}  # where that differs
-CURVE = (60_000, 1_500_000)  # of a pushover under displacement control
-# Of a pushover on joints whose stiffness is a property, or whose profile is:
-GIVEN = {2: (100_000, 3_000_000), 3: (80_000, 900_000)}
+IN_SPACE = (120_000, 1_400_000)  # of such a pushover there, ...
+HELD = (150_000, 3_500_000)  # ... where supports hold it from the side: friction wedges, and two histories differ
+STONES = {2: (120_000, 2_000_000), 3: (300_000, 1_600_000)}  # where hardly a stone is like another, by dimension
+MOVING = {2: (60_000, 500_000), 3: (20_000, 200_000)}  # geometry that moves
+GIVEN = {2: (60_000, 400_000), 3: (150_000, 900_000)}  # joints whose stiffness is a property, or whose profile is
+CURVE, LED = (100_000, 800_000), (0.8, 2.5)  # of displacement control, and s beside: rows and looks on its way
+UNLIKE = 0.5  # share of stones of a weight of their own, from which on they are STONES, ...
+UPRIGHT = 0.1  # vertical part of the normal of a joint that stands
+BONDED = 1.5  # ... where each has so many joints
 COLLAPSE = "; where it collapses, ten to thirty times that: how far it stands is sought then"  # of a settlement
 FOLLOW_STEPS = (30_000, 120_000)  # to follow a collapse
 NANOSECONDS = {  # per contact point and step (scripts/benchmark), by dimension
@@ -73,7 +86,7 @@ def cost_of(case: Case, sim: Simulation, of_property: bool) -> list[tuple[str, s
     """Lines of an analysis that ends at rest; of_property: the stiffness or profile of its joints is one of theirs."""
     points, d, analysis = sim.first_points, sim.model.dimension, case.analysis
     costs = NANOSECONDS[d]
-    few, many = (min(steps, analysis.max_steps) for steps in _steps(case, d, of_property))
+    few, many = (min(steps, analysis.max_steps) for steps in _steps(case, sim, of_property))
     if analysis.kind == "safety":
         from dem_cli.ensembles.static_values import expected
 
@@ -81,8 +94,10 @@ def cost_of(case: Case, sim: Simulation, of_property: bool) -> list[tuple[str, s
     moves = sim.kinematics != "fixed" or (of_property and analysis.kinematics == "auto")
     each = costs[sim.kinematics], costs["large" if moves else "fixed"]
     span = START.plus(*Span(few, many).times(1e-9 * points * each[0], 1e-9 * points * each[1]))
+    if getattr(analysis, "control", "load") == "displacement" and analysis.kind == "pushover":
+        span = span.plus(*LED)
     said = f"{each[0]}" if each[0] == each[1] else f"{each[0]} to {each[1]}"
-    basis = f"{few:,} to {many:,} steps × {points:,} points × {said} ns"
+    basis = f"as {few:,} to {many:,} steps × {points:,} points × {said} ns"
     if follows := getattr(analysis, "follow", 0.0) > 0.0 and getattr(analysis, "control", "load") == "load":
         fewest, most = FOLLOW_STEPS
         each_step = 1e-9 * points * costs["large"]
@@ -90,18 +105,56 @@ def cost_of(case: Case, sim: Simulation, of_property: bool) -> list[tuple[str, s
         basis += f", then {fewest:,} to {most:,} × {costs['large']} ns for the collapse"
     collapse = COLLAPSE if analysis.kind == "settlement" else ""
     first = FIRST[d]["large" if moves or follows else "fixed"]
-    return [("cost", f"{span.words()} ({basis}){collapse}"), ("first run", _first(first))]
+    return [("cost", f"{_on_this_core(span, basis)}{collapse}"), ("first run", _first(first))]
 
 
-def _steps(case: Case, dimension: int, of_property: bool) -> tuple[int, int]:
+def _on_this_core(span: Span, basis: str) -> str:
+    """A range, of the core of the benchmarks, in words about this one."""
+    slower = slowness()
+    speed = f"{slower:.2g} times the seconds of docs/benchmarks.md"
+    return f"{span.times(slower, slower).words()} ({basis}; this core takes {speed})"
+
+
+@cache
+def slowness() -> float:
+    """How many times as long as that of docs/benchmarks.md this core takes now, by a short loop."""
+    begun, total = time.process_time(), 0
+    for i in range(PASSES):
+        total += i * i
+    return (time.process_time() - begun) / (LOOP * PASSES)
+
+
+def _steps(case: Case, sim: Simulation, of_property: bool) -> tuple[int, int]:
     """Fewest and most steps of such an analysis."""
-    if case.analysis.kind == "pushover":
-        if case.analysis.control == "displacement":
-            return CURVE
-        if of_property:
-            return GIVEN[dimension]
-    kind = case.analysis.kind
-    return IN_SPACE[kind] if dimension == 3 and kind in IN_SPACE else STEPS[kind]
+    kind, d = case.analysis.kind, sim.model.dimension
+    if kind != "pushover":
+        return STEPS[kind]
+    if case.analysis.control == "displacement":
+        return CURVE
+    if of_property:
+        return GIVEN[d]
+    if sim.kinematics != "fixed":
+        return MOVING[d]
+    if _of_stones(sim):
+        return STONES[d]
+    if d == 3:
+        return HELD if _held_sideways(sim) else IN_SPACE
+    return STEPS[kind]
+
+
+def _held_sideways(sim: Simulation) -> bool:
+    """Whether some support touches blocks that do not lie on it."""
+    joints, fixed = sim.joints, sim.model.fixed
+    normals = joints.frames[joints.starts[:-1], sim.model.dimension - 1]
+    return bool((fixed[joints.blocks].any(axis=1) & (np.abs(normals) < UPRIGHT)).any())
+
+
+def _of_stones(sim: Simulation) -> bool:
+    """Whether hardly a block weighs what another does, as in rubble, and they are more than a column or an arch."""
+    masses = sim.model.masses[~sim.model.fixed]
+    if not len(masses) or len(sim.joints.blocks) < BONDED * len(masses):
+        return False
+    return len(np.unique(np.round(masses / masses.max(), 6))) > UNLIKE * len(masses)
 
 
 def _first(seconds: tuple[int, int]) -> str:
@@ -130,6 +183,6 @@ def cost_of_shaking(
     each = f"{runs:,} runs × " if runs > 1 else ""
     basis = f"{each}{steps:,} steps × ({points:,} points × {each_point} ns + {PER_STEP} µs){again}"
     return [
-        ("cost", f"{span.plus(*START).plus(*SHOWN[d]).words()} ({basis})"),
+        ("cost", _on_this_core(span.plus(*START).plus(*SHOWN[d]), basis)),
         ("first run", _first(FIRST[d]["shaken"])),
     ]

@@ -35,6 +35,10 @@ class EvenTimes:
         before, self.shown = self.shown, max(self.shown, int((self.times <= time).sum()))
         return self.shown > before
 
+    def left(self, _since: float, _still: bool) -> float:
+        """None is waited for: every look may be the one."""
+        return 0.0
+
 
 class Intervals:
     """Snapshots no further apart than an interval [s], or another one where all is still, and one at the end."""
@@ -44,7 +48,14 @@ class Intervals:
 
     def due(self, time: float, since: float, still: bool) -> bool:
         """Whether the last one is long ago [s], or this is the end; still: no block has moved visibly until now."""
-        return since >= (self.interval_still if still else self.interval) or time >= self.end
+        return since >= self._wanted(still) or time >= self.end
+
+    def left(self, since: float, still: bool) -> float:
+        """How long it is until the next one [s]."""
+        return self._wanted(still) - since
+
+    def _wanted(self, still: bool) -> float:
+        return self.interval_still if still else self.interval
 
 
 class Snapshots:
@@ -58,7 +69,7 @@ class Snapshots:
     def __init__(self, track: Track, sim: DynamicSimulation, ground: GroundMotion, gravity: float, wanted: int | None):
         self.track, self.sim, self.ground, self.gravity = track, sim, ground, gravity
         self.settings: SnapshotSettings = sim.settings.snapshots
-        self.wanted, self.stage, self.every = wanted, "shaking", 1
+        self.wanted, self.stage, self.due = wanted, "shaking", 0
         self.ahead: Frame | None = None  # of the largest displacement so far, where none is kept since
         self.drawn = sim.reference_positions[sim.free]
         self.visible = self.settings.visible * size_of(sim)
@@ -70,16 +81,20 @@ class Snapshots:
         sampled: steps from one sample of the monitors to the next. Looks fall on samples, so that both see one peak.
         """
         settings, sim = self.settings, self.sim
-        self.every = sampled * max(1, round(settings.look / (sampled * sim.dt)))
+        self.close = self.spaced = sampled * max(1, round(settings.look / (sampled * sim.dt)))
         self.last, self.last_turns, self.last_step = self._places(), self._turns(), sim.steps  # of the last one kept
         self.farthest = _largest(self.last)  # [m]
+        self.seen = sim.steps, self.farthest, 0.0, 0.0  # at the last look: step, and as `look` has them
         of_ground = settings.per_cycle * frequency_of(self.ground, duration)
         self.per_second = min(max(settings.per_second, of_ground), settings.most_per_second)
         self.times = self._until(duration, duration, self.per_second)
+        self.spaced = self.close * self._times_as_far()
+        self._look_again_after(self.close)
 
     def collapsed(self, end: float) -> None:
         """A collapse is followed from now until `end` [s]."""
         self.stage, self.ahead, left = "collapse", None, end - self.sim.time
+        self.spaced = self.close
         self.times = self._until(end, left, max(self.per_second, self.settings.per_second_of_collapse))
         self.look()
 
@@ -91,20 +106,49 @@ class Snapshots:
 
     def look(self) -> None:
         """Keep this instant, or remember it."""
+        self._look_again_after(self.close)
         sim, places = self.sim, self._places()
         moved, since = _largest(places), sim.dt * (sim.steps - self.last_step)
         if self.track.frames == 0 or not math.isfinite(moved) or since == 0.0:
             return
-        record, self.farthest = moved > self.farthest, max(moved, self.farthest)
-        away = _largest(places - self.last)
+        record, away = moved > self.farthest, _largest(places - self.last)
+        turned = largest_angle_between(self._turns(), self.last_turns)
+        looks, self.farthest = self._looks_ahead(moved, away, turned), max(moved, self.farthest)
         still = self.farthest < self.settings.swing * self.visible
-        if self.times.due(sim.time + 0.5 * sim.dt, since + 0.5 * sim.dt, still) or self._swung(away):
+        if self.times.due(sim.time + 0.5 * sim.dt, since + 0.5 * sim.dt, still) or self._swung(away, turned):
             if self.ahead is not None and not record:
                 self._keep(self.ahead)
             self.ahead, self.last, self.last_turns, self.last_step = None, places, self._turns(), sim.steps
+            self.seen, since = (sim.steps, moved, 0.0, 0.0), 0.0
             self._keep(self._frame())
         elif record and self.stage == "shaking":
             self.ahead = self._frame()
+        due = math.ceil(self.times.left(since, still) / (self.close * sim.dt) - 1e-6)
+        self._look_again_after(self.close * max(min(looks, due), 1))
+
+    def _look_again_after(self, steps: int) -> None:
+        """The next look, on a sample."""
+        done = round(self.sim.time / self.sim.dt)
+        self.due = done - done % self.close + steps
+
+    def _times_as_far(self) -> int:
+        """How many times as far apart looks may be where nothing is near: a part of the time between snapshots."""
+        if self.wanted is not None:
+            return 1
+        between = self.settings.between / (self.per_second * self.close * self.sim.dt)
+        return max(1, min(int(between), self.settings.spaced))
+
+    def _looks_ahead(self, moved: float, away: float, turned: float) -> int:
+        """How many times `close` on no block goes farther than ever, or by a swing, at twice the rate seen last."""
+        (step, *before), now = self.seen, (moved, away, turned)
+        self.seen = self.sim.steps, *now
+        passed, looks = max(self.sim.steps - step, 1) / self.close, self.spaced // self.close
+        size = max(self.farthest, self.visible)
+        ends = self.farthest + self.settings.trifle * size, self.settings.swing * size, self.settings.turn
+        for one, was, end in zip(now, before, ends, strict=True):
+            if one > was and looks > 1:
+                looks = min(looks, int(0.5 * passed * (end - one) / (one - was)))
+        return max(looks, 1)
 
     def _places(self) -> np.ndarray:
         """Displacements of the free blocks [m], (n_free, d)."""
@@ -114,16 +158,14 @@ class Snapshots:
     def _turns(self) -> np.ndarray:
         return self.sim.bodies.orientations.take(self.sim.free, axis=0)
 
-    def _swung(self, away: float) -> bool:
+    def _swung(self, away: float, turned: float) -> bool:
         """Whether a block moved or turned so far since the last snapshot that it would be lost between even times.
 
-        away: how far one moved at most [m].
+        away: how far one moved at most [m]; turned: how far one turned [rad].
         """
         if self.wanted is not None or self.room <= 0:
             return False
-        if away > self.settings.swing * max(self.farthest, self.visible):
-            return True
-        return largest_angle_between(self._turns(), self.last_turns) > self.settings.turn
+        return away > self.settings.swing * max(self.farthest, self.visible) or turned > self.settings.turn
 
     def _frame(self) -> Frame:
         self.sim.show_base(self.ground.along(self.sim.time), self.gravity)

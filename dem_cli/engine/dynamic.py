@@ -31,7 +31,7 @@ from dem_cli.model.model import Model
 class Looker(Protocol):
     """Who looks at a simulation while it is shaken."""
 
-    every: int  # steps of the motion from one look to the next
+    due: int  # step of the motion, at the end of which is the next look
 
     def look(self) -> None:
         """At the end of a step; changes nothing."""
@@ -219,7 +219,7 @@ class DynamicSimulation(Simulation):
                 self._turn_dead_loads()
                 n = min(n, self.settings.relaxation.follow_every)
             if looker is not None:
-                n = min(n, looker.every - (done + step) % looker.every)
+                n = min(n, max(looker.due - done - step, 1))
             advanced = self._run(step, n, ground, watch)
             step += advanced
             if last:
@@ -228,7 +228,7 @@ class DynamicSimulation(Simulation):
             self.follow_faces()
             self.steps += advanced
             self.time = self.dt * (done + step)
-            if looker is not None and (done + step) % looker.every == 0:
+            if looker is not None and done + step >= looker.due:
                 looker.look()
 
     def watch(self, blocks: np.ndarray, every: int, n_samples: int, gauges: Gauges = NO_GAUGES) -> Watch:

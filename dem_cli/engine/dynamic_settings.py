@@ -81,6 +81,9 @@ class SnapshotSettings:
     turn: float = 0.5  # rad: who turned by it since the last one asks for one
     visible: float = 2e-3  # of the size of the structure: a displacement that counts as such, at least
     look: float = 2.5e-3  # s between two looks, at least
+    spaced: int = 16  # times as far apart are they where no block nears its farthest or a swing, ...
+    between: float = 0.5  # ... and at most so much of the time between two snapshots
+    trifle: float = 1e-4  # of the largest displacement so far: going farther by less is no reason to look closely
     bytes: int = 100_000_000  # on disk, about: more of them are not kept ...
     fewest: int = 100  # ... but so many in any case
 

@@ -9,6 +9,7 @@ STUDIES = {  # module with STUDY, sentence of the list
     "chapter6": ("studies.chapter6.study", "thesis chapter 6: shaken blocks, column and arch"),
     "chapter7": ("studies.chapter7.study", "thesis chapter 7: joints that are not plane"),
     "church": ("studies.church.study", "thesis Appendix A: the slice of a church"),
+    "costs": ("studies.costs.study", "what `dem check` says that runs cost, and what they cost"),
     "deformable": ("studies.deformable.study", "joints and blocks that deform: points, lumped blocks"),
     "gallery": ("studies.gallery", "the pictures of docs/gallery.md"),
     "imperfections": ("studies.imperfections.study", "the 21-block wall with one block too low (thesis 5.4)"),

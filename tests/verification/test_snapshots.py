@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from engine import block, rectangle, tables
 
+from dem_cli.dynamics.snapshots import Snapshots
 from dem_cli.engine.settings import DEFAULT
 
 GROUND = block("base", rectangle(-3, -1, 3, 0), fixed=True)
@@ -71,6 +72,21 @@ def test_what_stands_still_needs_few_frames():
     gaps = np.diff([frame.time for frame in records.frames])
     assert gaps.max() <= 1.0 / DEFAULT.snapshots.per_second_still + 0.0051
     assert len(gaps) < 2.5 * 2.0 * DEFAULT.snapshots.per_second_still  # with those of turning points
+
+
+def test_looks_are_few_where_no_snapshot_is_near(monkeypatch):
+    """A look takes as long as a hundred steps: 4,200 of them took a tenth of a run of three drums."""
+    motion = {"kind": "harmonic", "amplitude": 7.5, "frequency": 1.0, "cycles": 2.0}
+    looks: list[float] = []
+    kept: list[float] = []
+    look, keep = Snapshots.look, Snapshots._keep
+    monkeypatch.setattr(Snapshots, "look", lambda self: (looks.append(self.sim.time), look(self)))
+    monkeypatch.setattr(Snapshots, "_keep", lambda self, frame: (kept.append(frame.time), keep(self, frame)))
+    engine.solve(shaken(0.5, 0.5, 4.0, motion=motion))
+    close = 0.005  # s: two samples; closer looks are those of books
+    afterwards = {round(time, 9) for time in looks if time > 2.5}  # the ground is at rest
+    assert len(afterwards) < 0.45 * 1.5 / close
+    assert np.diff([time for time in kept if time > 2.5]).max() <= 1.0 / DEFAULT.snapshots.per_second + 0.0051
 
 
 def test_frames_follow_what_moves_faster_than_the_ground():

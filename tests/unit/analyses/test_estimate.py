@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from dem_cli import api
+from dem_cli.analyses import estimate_cost
 from dem_cli.analyses.estimate import describe
 from dem_cli.engine import loops
 from dem_cli.errors import CaseError
@@ -41,7 +42,7 @@ def test_wall_of_21_blocks(monkeypatch):
     assert found["largest block"] == "'wall-1-2', 0.12 kg"
     assert "kn·h/W 1e+10, kn and ks chosen (auto)" in found["stiffness dry"]
     assert found["kinematics"].startswith("fixed (auto): all joints are closed")
-    assert "30,000 to 2,000,000 steps × 98 points × 10 ns" in found["cost"]
+    assert "(as 40,000 to 500,000 steps × 98 points × 10 ns" in found["cost"]
     assert found["first run"].startswith("2 to ")  # s of compiling, which the cost leaves out
     assert found["memory"].startswith("some 25")  # a run of it was seen to take 284 MB
     assert found["load"].startswith("mass: λ × weight of each block along [1.0, 0.0]; [21.19, 0] N")
@@ -53,6 +54,70 @@ def test_wall_of_231_blocks():
     # 11 + 21 × 20 bed joints; 10 and 9 head joints in 11 courses each.
     assert found["joints"] == "640, 1,280 contact points"
     assert found["joint dry"] == "431 bed joints, 209 others"
+
+
+@pytest.mark.parametrize("slower", [1.0, 2.0])
+def test_seconds_are_those_of_this_core(monkeypatch, slower):
+    """START, 40,000 to 500,000 steps of 98 points at 10 ns, 30,000 to 120,000 of the collapse at 20 ns."""
+    monkeypatch.setattr(estimate_cost, "slowness", lambda: slower)
+    said = rows("wall_21")["cost"]
+    low, high = (float(said.split()[i]) for i in (0, 3))
+    assert low == pytest.approx(slower * (0.33 + 98e-9 * (40_000 * 10 + 30_000 * 20)), rel=0.05)  # two figures
+    assert high == pytest.approx(slower * (0.9 + 98e-9 * (500_000 * 10 + 120_000 * 20)), rel=0.05)
+    assert f"{slower:.2g} times the seconds of docs/benchmarks.md" in said
+
+
+def test_a_core_has_a_speed():
+    """A loop of Python takes from a tenth to ten times the seconds of the benchmarks, on whatever runs this."""
+    assert 0.1 < estimate_cost.slowness() < 10.0
+
+
+STONES = """
+dimension = {dimension}
+[materials.stone]
+density = 2000.0
+[joints.dry]
+friction = 0.6
+[[structure]]
+kind = "voronoi-wall"
+cells = 12
+size = {size}
+seed = 3
+[analysis]
+kind = "pushover"
+direction = {direction}
+"""
+
+
+@pytest.mark.parametrize(
+    ("dimension", "size", "direction", "steps"),
+    [
+        (2, "[2.0, 2.0]\nthickness = 0.5", "[1.0, 0.0]", "120,000 to 2,000,000"),
+        (3, "[2.0, 2.0, 0.5]", "[0.0, 1.0, 0.0]", "300,000 to 1,600,000"),
+    ],
+)
+def test_rubble_takes_longer_than_courses(tmp_path, dimension, size, direction, steps):
+    path = tmp_path / "rubble.toml"
+    path.write_text(STONES.format(dimension=dimension, size=size, direction=direction))
+    loaded = api.load_case(path)
+    assert f"as {steps} steps" in dict(describe(loaded.case, api.build_model(loaded)))["cost"]
+
+
+@pytest.mark.parametrize("name", ["drum_column", "arch_21"])
+def test_columns_and_arches_are_no_rubble(name):
+    """Seven drums have seven weights."""
+    assert "as 40,000 to 500,000 steps" in rows(name)["cost"]
+
+
+def test_what_is_computed_beside_a_failure_load_is_said():
+    assert rows("wall_21")["beside it"].startswith("the path of joints that do not dilate where limit analysis")
+    large = ("structure.0.courses=20", "structure.0.blocks_per_course=10")
+    assert rows("wall_21", *large)["beside it"].startswith(
+        "where friction takes part in the bound: an implicit history from gravity to failure, and a path; where two"
+    )
+    moving = rows("wall_21", "analysis.kinematics='large'")["beside it"]
+    assert moving == "the same loads once more on joints 10 times as soft"
+    assert "beside it" not in rows("wall_21", "analysis.kinematics='large'", "joints.dry.kn=1e9", "joints.dry.ks=1e9")
 
 
 def test_a_large_wall_is_raised_from_a_smoothed_path():
@@ -123,12 +188,12 @@ def test_time_history(tmp_path, monkeypatch):
     assert found["time step"].startswith(f"{1 / highest:.3g} s, 0.5 of the largest stable one, {2 / highest:.3g} s")
     assert float(found["first frequency"].split()[0]) == pytest.approx(lowest / 6.283185307, rel=1e-3)
     assert found["steps"] == f"{int(5.0 * highest) + 1:,}"
-    assert found["cost"].endswith(f"({found['steps']} steps × (2 points × 55 ns + 0.4 µs))")
+    assert f"({found['steps']} steps × (2 points × 55 ns + 0.4 µs); this core" in found["cost"]
     assert found["load"] == "5 s of motion, peak 3 m/s²"
     assert "runs" not in found
     automatic = shaken(tmp_path, "joints.dry.kn='auto'", "joints.dry.ks='auto'")
     assert automatic["runs"].startswith("one more on joints 10 times as soft where blocks rock or slide")
-    assert automatic["cost"].endswith("and once more on softer joints)")
+    assert "and once more on softer joints; this core" in automatic["cost"]
     repeated = shaken(tmp_path, "analysis.margin=0.5", "analysis.repeats=9")
     assert repeated["runs"] == "10 with repeats"
     assert f"(10 runs × {found['steps']} steps" in repeated["cost"]
