@@ -30,7 +30,7 @@ EXEMPT = {  # file and name: why
 SPARSE = {  # files with `@` of sparse matrices, which SciPy adds up itself
     "dynamics/frequencies.py", "dynamics/rocking_stiffness.py", "engine/rigid_joints.py", "limit/associated.py",
     "limit/collapse_states.py", "limit/cone.py", "limit/elastic.py", "limit/frontal_program.py", "limit/interior.py",
-    "limit/joint_forces.py", "limit/matrices.py", "limit/program.py", "limit/snapshot.py",
+    "limit/joint_forces.py", "limit/matrices.py", "limit/program.py", "limit/snapshot.py", "links/tension_points.py",
 }  # fmt: skip
 SOURCES = sorted(
     path
