@@ -265,7 +265,9 @@ def _beside(case: Case, sim: Simulation) -> Rows:
     if sim.kinematics != "fixed":
         softer = "" if sim.properties.given else f"the same loads once more on joints {SOFTER:g} times as soft"
         return [("beside it", softer)] if softer else []
-    if sim.law.bonded or sim.properties.rough or sim.links or DEFAULT.limit.too_large(blocks, d):
+    if sim.law.bonded or sim.properties.rough or DEFAULT.limit.too_large(blocks, d):
+        return []
+    if any(link.only_pulling() is None for link in sim.links):
         return []
     said = "the path of joints that do not dilate where limit analysis leaves the load open"
     if d == 2 and blocks >= DEFAULT.implicit_history.blocks and not case.analysis.step:
