@@ -57,6 +57,7 @@ STEPS = {  # of a kind of analysis
 IN_SPACE = (120_000, 1_400_000)  # of such a pushover there, ...
 HELD = (150_000, 3_500_000)  # ... where supports hold it from the side: friction wedges, and two histories differ
 STONES = {2: (120_000, 2_000_000), 3: (300_000, 1_600_000)}  # where hardly a stone is like another, by dimension
+LINKED = (30_000, 2_500_000)  # ties and bars that stretch: of 60 small structures 2 took more, of 4 large ones 2
 MOVING = {2: (60_000, 500_000), 3: (20_000, 200_000)}  # geometry that moves
 GIVEN = {2: (60_000, 400_000), 3: (150_000, 900_000)}  # joints whose stiffness is a property, or whose profile is
 CURVE, LED = (100_000, 800_000), (0.8, 2.5)  # of displacement control, and s beside: rows and looks on its way
@@ -135,6 +136,8 @@ def _steps(case: Case, sim: Simulation, of_property: bool) -> tuple[int, int]:
         return GIVEN[d]
     if sim.kinematics != "fixed":
         return MOVING[d]
+    if sim.links:
+        return LINKED
     if _of_stones(sim):
         return STONES[d]
     if d == 3:
