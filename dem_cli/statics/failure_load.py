@@ -168,21 +168,33 @@ class LoadSearch:
 
     def _raise_to_estimate(self) -> None:
         """The load raised from gravity, in steps that shrink towards an estimate of the failure load."""
-        answer, settings, sim = self.answer, self.settings, self.sim
-        self.track.observer.progress("estimating the failure load", 0.0, 0.0, None)
-        estimate = self._creep(settings.reach * answer.compliance)
-        sim.restore(answer.standing)
-        most = min(self.limit, settings.beyond_stiff * self.on_stiff_joints)
-        estimate = min(estimate if estimate > 0.0 else settings.probe, most)
-        expected = False
-        if self.impossible < np.inf:
-            estimate, expected = self._expected(min(estimate, self.impossible))
+        answer, settings = self.answer, self.settings
+        estimate, expected = (self.impossible, True) if self._path_meets_the_bound() else self._estimated()
         hinges = expected and answer.limits is not None and not answer.limits.slides
         levels = [share * estimate for share in (settings.shares_of_hinges if hinges else settings.shares)]
         if expected:
             levels.append((1.0 - settings.short * self.resolution) * estimate)
             levels.append((1.0 + settings.beyond * self.resolution) * estimate)
         self._raise_load(self._trials(levels, settings.first_step * self.resolution * estimate))
+
+    def _estimated(self) -> tuple[float, bool]:
+        """An estimate by a creep, and whether the load is expected to fail there."""
+        answer, settings, sim = self.answer, self.settings, self.sim
+        self.track.observer.progress("estimating the failure load", 0.0, 0.0, None)
+        estimate = self._creep(settings.reach * answer.compliance)
+        sim.restore(answer.standing)
+        most = min(self.limit, settings.beyond_stiff * self.on_stiff_joints)
+        estimate = min(estimate if estimate > 0.0 else settings.probe, most)
+        return self._expected(min(estimate, self.impossible)) if self.impossible < np.inf else (estimate, False)
+
+    def _path_meets_the_bound(self) -> bool:
+        """Whether a path that was followed already rose steadily to the load that limit analysis allows at most."""
+        limits, resolution = self.answer.limits, self.resolution
+        path = limits.path if limits is not None and limits.followed else None
+        if path is None or path.load is None or not path.finished or self.limit < self.impossible < np.inf:
+            return False
+        steady = path.rest is None and path.fall <= resolution
+        return steady and path.load >= (1.0 - self.settings.short * resolution) * (self.answer.bound or np.inf)
 
     def _expected(self, estimate: float) -> tuple[float, bool]:
         """A better estimate, and whether the load is expected to fail there: at the bound, or where the path ends."""
@@ -212,6 +224,9 @@ class LoadSearch:
             return False
         plane = self.sim.model.dimension == 2  # in space it takes as long as the path, and fails more often
         if not plane or limits.largest < self.sim.settings.implicit_history.blocks or limits.too_large:
+            return False
+        beside = limits.largest <= self.sim.settings.warm_start.beside_implicit and limits.path is not None
+        if beside and self._path_meets_the_bound():
             return False
         known, rows, report = replace(answer), len(self.track.kept), dict(answer.start)
         starts = starts_by_history(limits, report, small)
