@@ -28,13 +28,13 @@ class Bilinear(NamedTuple):
 
 
 def bilinear(displacements: np.ndarray, loads: np.ndarray, secant: float = 0.7, drop: float = 0.8) -> Bilinear | None:
-    """The system of a curve that starts at rest, (n,) each, displacements growing [m]; None where it carries nothing.
+    """The system of a curve that starts at rest, (n,) each, displacements growing [m]; None where it carries nothing, or any load.
 
     secant: share of the peak load through which the elastic branch goes; drop: share at which the curve ends.
     """
     peak = int(np.argmax(loads))
     highest = float(loads[peak])
-    if highest <= 0.0 or peak == 0:
+    if not 0.0 < highest < np.inf or peak == 0:
         return None
     stiffness = secant * highest / _first(displacements, loads, secant * highest, 0, rises=True)
     softened = bool((loads[peak:] <= drop * highest).any())

@@ -224,8 +224,9 @@ class CapacityCurve:
         return values[:, 0], values[:, 1]
 
     def first_within(self, share: float) -> CurvePoint:
-        """The first point whose load is less than a share below the highest one."""
-        least = self.highest.load - share * abs(self.highest.load)
+        """The first point whose load is less than a share below the highest one, which may be without end."""
+        highest = self.highest.load
+        least = highest - share * abs(highest) if np.isfinite(highest) else highest
         return next(point for point in self.points if point.load >= least)
 
 

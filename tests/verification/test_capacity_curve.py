@@ -11,7 +11,7 @@ from dem_cli.engine import measures
 from dem_cli.engine.job import Job
 from dem_cli.statics.bilinear import bilinear
 from dem_cli.statics.compliance import compliance
-from dem_cli.statics.displacement_control import CapacityCurve, DisplacementControl, trace
+from dem_cli.statics.displacement_control import CapacityCurve, CurvePoint, DisplacementControl, trace
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.implicit_control import ImplicitControl
 
@@ -110,6 +110,15 @@ def test_the_curve_of_a_rocking_block_is_idealised():
     assert taken == pytest.approx(area, rel=1e-9)
     assert not bilinear(u[:55], loads[:55]).softened
     assert bilinear(u, -loads) is None
+
+
+def test_a_load_without_end_is_the_peak_and_has_no_idealised_system():
+    """A tilting table that stands upright has all of the live load and nothing of the dead ones."""
+    curve = CapacityCurve()
+    curve.points = [CurvePoint(u, load, u, u) for u, load in ((0.0, 0.0), (1e-3, 2.0), (2e-3, np.inf))]
+    curve.peak = 2
+    assert curve.first_within(0.05).displacement == 2e-3
+    assert bilinear(*curve.arrays()) is None
 
 
 @pytest.mark.parametrize("kind", ["pushover", "cycle"])
