@@ -28,7 +28,9 @@ class Bilinear(NamedTuple):
 
 
 def bilinear(displacements: np.ndarray, loads: np.ndarray, secant: float = 0.7, drop: float = 0.8) -> Bilinear | None:
-    """The system of a curve that starts at rest, (n,) each, displacements growing [m]; None where it carries nothing, or any load.
+    """The system of a curve that starts at rest, (n,) each, displacements growing [m].
+
+    None where the curve carries nothing, or a load without end.
 
     secant: share of the peak load through which the elastic branch goes; drop: share at which the curve ends.
     """
