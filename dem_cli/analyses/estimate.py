@@ -258,7 +258,7 @@ def _path(case: Case, sim: Simulation) -> Rows:
 
 
 def _beside(case: Case, sim: Simulation) -> Rows:
-    """Of a pushover: what is computed beside its failure load, which its cost holds."""
+    """Second histories that a pushover computes beside its failure load; its cost holds them."""
     d, blocks = sim.model.dimension, largest_structure(sim.joints.blocks, sim.model.fixed)
     if case.analysis.kind != "pushover" or not blocks:
         return []

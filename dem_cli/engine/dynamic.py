@@ -330,7 +330,10 @@ class DynamicSimulation(Simulation):
         self.control[slot.LIVE_FACTOR] = acceleration / gravity if gravity > 0.0 else 0.0
 
     def accelerations(self, blocks: np.ndarray) -> np.ndarray:
-        """Of the last step, relative to the base [m/s², rad/s²], (n, d + r); until `begin` as in any other."""
+        """Accelerations of blocks in the last step, relative to the base [m/s², rad/s²], (n, d + r).
+
+        Until `begin` they are those of the way to rest.
+        """
         if not self.real:
             return super().accelerations(blocks)
         bodies, shape, columns = self.bodies, self.shape, slice(self.model.rotations.stop)

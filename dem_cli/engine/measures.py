@@ -123,7 +123,7 @@ def live_travel(sim: Simulation) -> float:
 
 
 def dead_scale(sim: Simulation) -> float:
-    """What all dead loads would do to the softest joint, block or link [m]: nothing elastic moves by much more."""
+    """Elastic displacement of the softest joint, block or link under all dead loads [m]; none is larger by much."""
     joints = sim.joints
     total = np.sqrt((sim.loads.dead[sim.free, : sim.model.dimension] ** 2).sum(axis=1)).sum()
     if not len(joints.kn):

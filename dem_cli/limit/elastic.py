@@ -154,7 +154,7 @@ class Elastic:
         return values
 
     def forces_and_gaps(self, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of joints: normal forces [N], (n,), shear forces [N], (n, d − 1), and gaps [m], (n,); n = n_joint_points."""
+        """Normal forces [N], (n,), shear forces [N], (n, d − 1), and gaps [m], (n,), of joints; n = n_joint_points."""
         n = self.n_joint_points
         gaps, normal, kn = self.opened(state.displacements)[:n], state.normal[:n], self.kn[:n]
         closed = normal > kn * (gaps + normal / kn)

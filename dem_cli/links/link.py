@@ -96,7 +96,7 @@ class LinkArrays(Protocol):
         """For limit analysis: forces where they were drawn, with the least and largest of each [N], (n, 2)."""
 
     def only_pulling(self) -> TensionSprings | None:
-        """As springs that pull between two blocks, where they were drawn; None: they do more than that."""
+        """Springs that only pull between two blocks, where they were drawn; None where a link does more than that."""
 
     def yields(self) -> bool:
         """Whether the forces of any have limits at which it stretches or slides for good."""

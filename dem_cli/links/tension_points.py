@@ -31,7 +31,7 @@ class TensionPoints(NamedTuple):
     columns: np.ndarray  # free degrees of freedom of these, −1: held, (n, 2, n_dof)
 
     def scaled(self, weight: float, unit: float, columns: np.ndarray) -> TensionPoints:
-        """The same with forces over a weight, lengths over a unit, degrees of freedom over `columns`, (n_free,)."""
+        """Ties with forces over a weight, lengths over a unit, and degrees of freedom over `columns`, (n_free,)."""
         here = np.where(self.columns < 0, 0.0, np.append(columns, 0.0)[self.columns])
         return self._replace(
             stiffness=self.stiffness * unit / weight,

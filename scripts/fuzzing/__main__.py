@@ -111,7 +111,7 @@ def text_of(kind: str, seed: int, pool: Sequence[dict[str, Any]]) -> str:
 
 
 def no_numbers(value: Any, path: str = "") -> Iterator[str]:
-    """Where in a summary a number is none."""
+    """Paths in a summary at which a number is nan or infinite."""
     for key, item in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
         yield from no_numbers(item, f"{path}.{key}".lstrip("."))
     if isinstance(value, float) and not math.isfinite(value):
@@ -132,7 +132,7 @@ def wrong_arrays(file: Path) -> Iterator[str]:
 
 
 def doubts(summary: dict[str, Any], output: Path) -> Iterator[str]:
-    """What is wrong with the answer of a run that says "ok"."""
+    """Faults in the answer of a run that says "ok"."""
     if summary["status"] != "ok":
         return
     yield from (f"{path} of the summary is no number" for path in no_numbers(summary))
