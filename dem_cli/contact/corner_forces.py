@@ -21,9 +21,9 @@ def at_corners(joints: Joints, normal: np.ndarray, shear: np.ndarray) -> np.ndar
 
     shear: as the loops have them [N], (n_points, d − 1), which comes back where torsion is no matter.
     """
-    owners = joints.owners
-    if not (joints.torsion != 1.0).any():
+    if shear.shape[1] == 1 or not (joints.torsion != 1.0).any():
         return shear
+    owners = joints.owners
     share = joints.torsion[owners][:, None]
     tangents = frames(joints.frames, 3)[:, 1:]
     along = (shear[:, :, None] * tangents).sum(axis=1)

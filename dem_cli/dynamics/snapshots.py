@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.engine.dynamic_settings import SnapshotSettings
     from dem_cli.engine.track import Track
-    from dem_cli.output.record import Frame
 
 
 class EvenTimes:
@@ -70,7 +69,7 @@ class Snapshots:
         self.track, self.sim, self.ground, self.gravity = track, sim, ground, gravity
         self.settings: SnapshotSettings = sim.settings.snapshots
         self.wanted, self.stage, self.due = wanted, "shaking", 0
-        self.ahead: Frame | None = None  # of the largest displacement so far, where none is kept since
+        self.ahead: measures.Moment | None = None  # of the largest displacement so far, where none is kept since
         self.drawn = sim.reference_positions[sim.free]
         self.visible = self.settings.visible * size_of(sim)
         self.room = max(self.settings.bytes // bytes_of(sim), self.settings.fewest)  # frames that may still be kept
@@ -120,9 +119,9 @@ class Snapshots:
                 self._keep(self.ahead)
             self.ahead, self.last, self.last_turns, self.last_step = None, places, self._turns(), sim.steps
             self.seen, since = (sim.steps, moved, 0.0, 0.0), 0.0
-            self._keep(self._frame())
+            self._keep(measures.moment(sim))
         elif record and self.stage == "shaking":
-            self.ahead = self._frame()
+            self.ahead = measures.moment(sim)
         due = math.ceil(self.times.left(since, still) / (self.close * sim.dt) - 1e-6)
         self._look_again_after(self.close * max(min(looks, due), 1))
 
@@ -167,17 +166,14 @@ class Snapshots:
             return False
         return away > self.settings.swing * max(self.farthest, self.visible) or turned > self.settings.turn
 
-    def _frame(self) -> Frame:
-        self.sim.show_base(self.ground.along(self.sim.time), self.gravity)
-        return measures.frame(self.sim, self.stage)
-
-    def _keep(self, frame: Frame) -> None:
+    def _keep(self, moment: measures.Moment) -> None:
         self.room -= 1
-        self.track.hand_over(frame)
+        self.sim.show_base(self.ground.along(moment.time), self.gravity)
+        self.track.hand_over(measures.frame_of(self.sim, moment, self.stage))
 
 
 def _largest(displacements: np.ndarray) -> float:
-    return math.sqrt(np.square(displacements).sum(axis=1).max(initial=0.0))
+    return math.sqrt((displacements * displacements).sum(axis=1).max(initial=0.0))
 
 
 def frequency_of(ground: GroundMotion, duration: float) -> float:

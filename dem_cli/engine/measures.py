@@ -13,7 +13,7 @@ from dem_cli.contact.joints import points_in_use
 from dem_cli.engine.simulation import Simulation
 from dem_cli.geometry.rotation import frames, quaternions, rotation_vectors, turned_since, turning
 from dem_cli.kernels import records as slot
-from dem_cli.kernels.records import Bodies
+from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints
 from dem_cli.links.link import FIXED_POINT
 from dem_cli.links.matrices import softest
 from dem_cli.model import uniform_strain
@@ -52,7 +52,8 @@ def rotations_since(sim: Simulation, before: Bodies) -> np.ndarray:
 
 def largest_displacement(sim: Simulation) -> float:
     """Largest displacement of a centroid [m]."""
-    return float(np.sqrt((displacements(sim)[sim.free] ** 2).sum(axis=1)).max(initial=0.0))
+    moved = displacements(sim).take(sim.free, axis=0)
+    return float(np.sqrt((moved * moved).sum(axis=1)).max(initial=0.0))
 
 
 def largest_elastic(sim: Simulation) -> float:
@@ -271,19 +272,37 @@ def point_pushes(sim: Simulation) -> PointPushes:
     )  # fmt: skip
 
 
-def contact_record(sim: Simulation) -> ContactRecord:
-    """All contact points now."""
-    joints, contacts, d = sim.joints, sim.measured(), sim.model.dimension
-    owner, used = joints.owners, points_in_use(joints)
-    friction = np.sqrt((contacts.shear**2).sum(axis=1))
-    kn = np.where(used, joints.kn, 1.0)
+class Touching(NamedTuple):
+    """Contact points at one instant, which goes on being what it was while the simulation moves on."""
+
+    joints: Joints  # frames, stiffness and torsion of their own
+    contacts: Contacts
+    points: np.ndarray  # where they are [m], (n_points, d)
+
+
+def touching(sim: Simulation) -> Touching:
+    """The contact points of now: a copy, of which `contact_record` may be made later."""
+    contacts, owner = sim.measured(), sim.joints.owners
+    points, joints = contact_points(sim, sim.joints.blocks[owner, 0]) + sim.origin, sim.joints.kept()
+    if isinstance(joints, MovingJoints):
+        joints = joints._replace(frames=joints.frames.copy())
+    return Touching(joints, contacts, points)
+
+
+def contact_record(sim: Simulation, seen: Touching | None = None) -> ContactRecord:
+    """All contact points of an instant that was seen, or of now."""
+    joints, contacts, points = seen or touching(sim)
+    d, owner, used = sim.model.dimension, joints.owners, points_in_use(joints)
+    everywhere = bool(used.all())
+    friction = np.sqrt((contacts.shear * contacts.shear).sum(axis=1))
+    kn = joints.kn if everywhere else np.where(used, joints.kn, 1.0)
     limit = sim.law.shear_limit(joints.law[owner], contacts.normal, contacts.memory, kn)
     slides = friction >= limit * (1 - sim.settings.mechanism.slides)
-    state = np.where(contacts.normal == 0.0, 0, np.where(slides, 2, 1))
+    state = (1 + slides) * (contacts.normal != 0.0)  # index into STATES
     record = ContactRecord(
         joint=owner,
         blocks=joints.blocks[owner],
-        points=contact_points(sim, joints.blocks[owner, 0]) + sim.origin,
+        points=points,
         normals=joints.frames[:, :d].copy(),
         normal_force=contacts.normal,
         shear_force=at_corners(joints, contacts.normal, contacts.shear),
@@ -292,7 +311,7 @@ def contact_record(sim: Simulation) -> ContactRecord:
         state=state.astype(np.int8),
         tangents=joints.frames[:, d : d * (d - 1)].copy(),  # all but the last: none in the plane
     )
-    return record if used.all() else ContactRecord(*(values[used] for values in record))
+    return record if everywhere else ContactRecord(*(values[used] for values in record))
 
 
 def shares_of_blocks(sim: Simulation, compliance: BlockCompliance | None) -> np.ndarray:
@@ -306,11 +325,37 @@ def shares_of_blocks(sim: Simulation, compliance: BlockCompliance | None) -> np.
 
 def frame(sim: Simulation, stage: str) -> Frame:
     """A snapshot."""
+    return frame_of(sim, moment(sim), stage)
+
+
+class Moment(NamedTuple):
+    """What a frame shows of one instant but its load: a part of the cost of the frame, where many are dropped."""
+
+    steps: int
+    displacement: float  # largest of a centroid [m]
+    positions: np.ndarray  # fields as those of Frame
+    orientations: np.ndarray
+    velocities: np.ndarray
+    contacts: Touching
+    time: float  # [s]
+    stresses: np.ndarray | None
+    links: LinkRecord | None
+
+
+def moment(sim: Simulation) -> Moment:
+    """What a frame of now would show, for `frame_of`."""
     bodies = sim.bodies
+    return Moment(
+        sim.steps, largest_displacement(sim), bodies.positions + sim.origin, quaternions(bodies.orientations),
+        sim.speeds.copy(), touching(sim), sim.time, block_stresses(sim), link_record(sim),
+    )  # fmt: skip
+
+
+def frame_of(sim: Simulation, seen: Moment, stage: str) -> Frame:
+    """A snapshot of a moment that was seen, with the load of now."""
     return Frame(
-        stage, sim.steps, sim.load * sim.live_scale, largest_displacement(sim), bodies.positions + sim.origin,
-        quaternions(bodies.orientations), sim.speeds.copy(), contact_record(sim), sim.time,
-        block_stresses(sim), link_record(sim),
+        stage, seen.steps, sim.load * sim.live_scale, seen.displacement, seen.positions, seen.orientations,
+        seen.velocities, contact_record(sim, seen.contacts), seen.time, seen.stresses, seen.links,
     )  # fmt: skip
 
 

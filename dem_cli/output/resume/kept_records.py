@@ -25,7 +25,7 @@ _PLACES = {
     "dynamics.extremes": ("Extremes",),
     "dynamics.snapshots": ("EvenTimes", "Intervals"),
     "engine.loads": ("ActingForces",),
-    "engine.measures": ("EnergySums",),
+    "engine.measures": ("EnergySums", "Moment", "Touching"),
     "engine.placement.clearances": ("Play",),
     "engine.settings": ("DetectionSettings",),
     "engine.state": ("Books", "Carriers", "SavedState"),
