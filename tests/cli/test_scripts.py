@@ -121,7 +121,7 @@ def test_documentation_finds_what_it_reads(project):
         (["tests/laws"], ["-m", "not slow", "tests/laws"]),
         (["--all"], []),
         (["--all", "-k", "a b"], ["-k", "a b"]),
-        (["--third", "1", "-x"], ["-m", "not slow or third_1", "-x"]),
+        (["--quarter", "1", "-x"], ["-m", "not slow or quarter_1", "-x"]),
         (["-k", "--all"], ["-m", "not slow", "-k", "--all"]),  # an option of pytest's
         (["tests/test_a.py::test_slow"], ["tests/test_a.py::test_slow"]),  # whoever names a test wants it
         (["-x", "a.py::b[1 2]", "c"], ["-x", "a.py::b[1 2]", "c"]),
@@ -138,19 +138,19 @@ def test_slow_tests_are_run_with_all(project, words, given):
     assert said[said.index("5") + 1 :] == given
 
 
-def test_slow_tests_are_in_thirds():
-    """Each in one of three, of about the same size; all parameters of a test are in one."""
+def test_slow_tests_are_in_quarters():
+    """Each in one of four, of about the same size; all parameters of a test are in one."""
     names = {
         line.split("[")[0] for line in (ROOT / "tests" / "slow_tests.txt").read_text().splitlines() if line[0] != "#"
     }
-    sizes = [sum(zlib.crc32(name.encode(), 22) % 3 == k for name in names) for k in range(3)]
+    sizes = [sum(zlib.crc32(name.encode(), 172) % 4 == k for name in names) for k in range(4)]
     assert sum(sizes) == len(names)
     assert max(sizes) < 1.3 * min(sizes)
 
 
 @pytest.mark.parametrize("words", [[], ["--all"], ["-k", "a b"]])
-def test_continuous_integration_runs_everyday_tests_and_a_third_of_the_slow_ones(tmp_path, words):
-    """Which third hangs on the commit alone."""
+def test_continuous_integration_runs_everyday_tests_and_a_quarter_of_the_slow_ones(tmp_path, words):
+    """Which quarter hangs on the commit alone."""
     here = tmp_path / "checkout"
     (here / ".ci").mkdir(parents=True), (here / "scripts").mkdir()
     shutil.copy(ROOT / ".ci" / "run", here / ".ci" / "run")
@@ -165,7 +165,7 @@ def test_continuous_integration_runs_everyday_tests_and_a_third_of_the_slow_ones
         tool.chmod(0o755)
     path = f"{tools}:{os.environ['PATH']}"
     done = subprocess.run([here / ".ci" / "run", *words], env={"PATH": path}, capture_output=True, text=True)
-    assert done.stdout.splitlines() == (["--all"] if words == ["--all"] else ["--third", "2", *words]), done.stderr
+    assert done.stdout.splitlines() == (["--all"] if words == ["--all"] else ["--quarter", "0", *words]), done.stderr
 
 
 @pytest.mark.parametrize("script", ["scripts/run", "scripts/test", "scripts/study", "scripts/docs", ".ci/run"])
