@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Name, Pair, Positive, Vector
 from dem_cli.case.wording import show
@@ -67,7 +67,7 @@ class BlockTable(CaseModel):
     fixed: bool = Field(default=False, description="cannot move (base, support)", examples=[True])
 
     @model_validator(mode="after")
-    def _one_shape(self) -> BlockTable:
+    def _one_shape(self, info: ValidationInfo) -> BlockTable:
         given = [key for key in SHAPES if getattr(self, key) is not None]
         if len(given) > 1:
             listed = " and ".join(f"'{key}'" for key in given)
@@ -76,7 +76,8 @@ class BlockTable(CaseModel):
             raise ValueError("neither 'vertices' nor 'parts' is given; a block has one of them")
         if self.faces is not None and self.vertices is None:
             raise KeyProblem(f"not allowed with '{given[0]}'; faces are those of vertices", "faces")
-        if (self.polygon is None) != (self.y is None):
+        in_plane = (info.context or {}).get("dimension") == 2  # which is refused for what it is
+        if (self.polygon is None) != (self.y is None) and not in_plane:
             raise KeyProblem("missing; a prism has a polygon in x and z, and goes from y[0] to y[1]",
                              "polygon" if self.polygon is None else "y")  # fmt: skip
         if self.y is not None and not self.y[0] < self.y[1]:

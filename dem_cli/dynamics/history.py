@@ -153,8 +153,7 @@ class TimeHistory:
         """Stretches of the motion, of so many steps in all; returns the block that fell first."""
         history, sim, dt = self.job.settings.history, self.sim, self.step.step
         every = self._every()
-        worth = min(history.steps_of_a_look, total / history.fewest_rows)
-        stretch = max(1, math.ceil(min(max(total / history.rows, worth), history.longest_look / dt)))
+        stretch = max(1, math.ceil(min(total / history.rows, history.longest_look / dt)))
         motion = _Shaking(self.duration)
         if not sim.stages.resumed(motion):
             self.snapshots.begin(motion.end, every)

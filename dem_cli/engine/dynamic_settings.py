@@ -37,9 +37,7 @@ class HistorySettings:
     """Time histories: looks along the way, time step, and when one of many runs has ended."""
 
     longest_look: float = 0.1  # s from one look to the next, at most
-    rows: int = 200  # looks along the way: energies, collapse, whether all is well ...
-    fewest_rows: int = 50  # ... but so few where they would be closer than the steps that take as long as a look
-    steps_of_a_look: int = 500
+    rows: int = 200  # looks along the way: energies, collapse, whether all is well
     settling: int = 4_000_000  # steps to come to rest, at most
     trifle: float = 1e-9  # of a weight × step: an impulse of landing that asks for no more sweeps of what is near
     blow_up: float = 0.2  # energy error over the largest energy from which a run is stopped
