@@ -14,7 +14,7 @@ from dem_cli.engine import measures
 from dem_cli.engine.kinematics import gaps_may_close
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.errors import UsageError
-from dem_cli.output.record import ABOVE
+from dem_cli.records.statuses import ABOVE
 from dem_cli.statics.failure_bracket import OK
 
 if TYPE_CHECKING:

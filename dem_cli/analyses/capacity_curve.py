@@ -20,7 +20,7 @@ from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 from dem_cli.statics import softer_joints
 from dem_cli.statics.agreement import doubts, load_range, percent
 from dem_cli.statics.compliance import check_moves, compliance

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from dem_cli.engine.job import Job
     from dem_cli.engine.state import SavedState
     from dem_cli.engine.track import Track
-    from dem_cli.output.record import Frame, HistoryRow
+    from dem_cli.records.frames import Frame
+    from dem_cli.records.history_rows import HistoryRow
 
 RAMPS, IMPLICIT, MIXED = "ramps", "implicit", "ramps, long ones implicit"  # how increments were made
 INTERRUPTED = "interrupted"

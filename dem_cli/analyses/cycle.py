@@ -16,8 +16,8 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.track import Track
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import FALLS, Observer
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import Observer, stage
+from dem_cli.records.statuses import FALLS
 from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.displacement_control import DisplacementControl
 from dem_cli.statics.equilibrium import settle_or_fail, unexpected

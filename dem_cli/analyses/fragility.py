@@ -37,7 +37,10 @@ from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, told_pea
 from dem_cli.ensembles.variants import Variant
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import FALLS, MOVES, Observer, RunRow, distinct
+from dem_cli.output.distinct_names import distinct
+from dem_cli.records.history_rows import RunRow
+from dem_cli.records.ports import Observer
+from dem_cli.records.statuses import FALLS, MOVES
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

@@ -11,7 +11,8 @@ from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import BUCKLED, FALLS, Observer
+from dem_cli.records.ports import Observer
+from dem_cli.records.statuses import BUCKLED, FALLS
 from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_test import moved_far
 

@@ -24,7 +24,9 @@ from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.model.model import Model
 from dem_cli.model.scales import mean_weight
-from dem_cli.output.record import FALLS, Frame, Observer
+from dem_cli.records.frames import Frame
+from dem_cli.records.ports import Observer
+from dem_cli.records.statuses import FALLS
 from dem_cli.statics.equilibrium import settle, stand
 
 if TYPE_CHECKING:

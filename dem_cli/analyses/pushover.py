@@ -18,7 +18,8 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import BUCKLED, FALLS, Observer
+from dem_cli.records.ports import Observer
+from dem_cli.records.statuses import BUCKLED, FALLS
 from dem_cli.statics import post_peak, softer_joints
 from dem_cli.statics.agreement import at_the_bound, doubts, histories, load_range, percent, unique
 from dem_cli.statics.compliance import compliance

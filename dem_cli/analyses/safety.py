@@ -22,7 +22,7 @@ from dem_cli.ensembles.static_values import changed, checked_model, load_doubts,
 from dem_cli.errors import CaseError
 from dem_cli.laws.strength import strengths
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

@@ -18,8 +18,8 @@ from dem_cli.engine.track import Track
 from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.geometry.rotation import turned_as_one
 from dem_cli.model.model import Model
-from dem_cli.output.record import BUCKLED, FALLS, Observer
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import Observer, stage
+from dem_cli.records.statuses import BUCKLED, FALLS
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.settlement_way import SettlementWay

@@ -18,7 +18,7 @@ from dem_cli.engine.measures import largest_displacement
 from dem_cli.engine.settings import Settings
 from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult
 from dem_cli.ensembles.variants import Variant
-from dem_cli.output.record import MONITOR_UNITS
+from dem_cli.records.history_rows import MONITOR_UNITS
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Monitor

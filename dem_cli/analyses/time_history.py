@@ -29,7 +29,9 @@ from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRu
 from dem_cli.ensembles.variants import Variant
 from dem_cli.model.model import Model
 from dem_cli.motion.ground_motions import motions_of
-from dem_cli.output.record import FALLS, MOVES, Observer, RunRow
+from dem_cli.records.history_rows import RunRow
+from dem_cli.records.ports import Observer
+from dem_cli.records.statuses import FALLS, MOVES
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

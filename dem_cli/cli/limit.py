@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from dem_cli.limit.analysis import LimitLoads
     from dem_cli.limit.snapshot import Collapse
     from dem_cli.model.model import Model
-    from dem_cli.output.record import Frame
+    from dem_cli.records.frames import Frame
 
 
 @click.command("limit", short_help="Failure load by rigid-block limit analysis.")

@@ -16,7 +16,7 @@ from dem_cli.engine import measures
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.dynamic import DynamicSimulation
-    from dem_cli.output.record import Energy
+    from dem_cli.records.history_rows import Energy
 
 
 class BrakedMotion:

@@ -19,8 +19,8 @@ from dem_cli.arithmetic.products import product
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen
 from dem_cli.engine.measures import contact_record
 from dem_cli.engine.settings import DEFAULT
-from dem_cli.output.record import COLLAPSED, MOVES, ROCKS, STOOD
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import stage
+from dem_cli.records.statuses import COLLAPSED, MOVES, ROCKS, STOOD
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

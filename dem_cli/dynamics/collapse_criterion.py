@@ -15,7 +15,7 @@ from dem_cli.geometry.rotation import leans_of
 if TYPE_CHECKING:
     from dem_cli.dynamics.time_step import TimeStep
     from dem_cli.engine.dynamic import DynamicSimulation
-    from dem_cli.output.record import Energy
+    from dem_cli.records.history_rows import Energy
     from dem_cli.tables.analysis import ShakingAnalysis
 
 

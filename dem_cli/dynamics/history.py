@@ -34,8 +34,9 @@ from dem_cli.engine.viscous import Damping
 from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
-from dem_cli.output.record import COLLAPSED, FALLS, MOVES, STOOD, Energy, Samples
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.history_rows import Energy, Samples
+from dem_cli.records.ports import stage
+from dem_cli.records.statuses import COLLAPSED, FALLS, MOVES, STOOD
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.mechanism import named
 

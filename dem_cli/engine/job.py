@@ -19,7 +19,7 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.track import Track
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
 
 GAUGES = {"displacement": slot.PLACE, "velocity": slot.SPEED, "rotation": slot.TURN}  # whose extremes are of all steps
-OF_BASE = {"acceleration": 0, "velocity": 1, "displacement": 2}  # as output.record.Samples.base
+OF_BASE = {"acceleration": 0, "velocity": 1, "displacement": 2}  # as records.history_rows.Samples.base
 
 
 class Points(NamedTuple):

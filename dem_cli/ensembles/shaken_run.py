@@ -17,8 +17,8 @@ from dem_cli.engine.job import Job
 from dem_cli.engine.measures import closure, energy
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
-from dem_cli.output.record import COLLAPSED, Observer
-from dem_cli.output.resume.stages import NOTHING_KEPT, Stages, stage
+from dem_cli.records.ports import NOTHING_KEPT, Observer, Stages, stage
+from dem_cli.records.statuses import COLLAPSED
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -39,7 +39,7 @@ class ShakenRunResult(NamedTuple):
     steps: int
     closure: float | None  # energy error over the largest energy
     seconds: float  # CPU of the thread [s]
-    ending: str = ""  # one of those of output/record.py; empty where the run failed
+    ending: str = ""  # one of those of records/statuses.py; empty where the run failed
     braked: float = 0.0  # share of the energy that mass damping took from blocks that rock, slide or fall
     impacts: int = 0  # steps in which contact points met
 

@@ -10,7 +10,9 @@ from dem_cli.engine.job import Job
 from dem_cli.engine.measures import closure
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
-from dem_cli.output.record import Frame, HistoryRow, Observer
+from dem_cli.records.frames import Frame
+from dem_cli.records.history_rows import HistoryRow
+from dem_cli.records.ports import Observer
 from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import NOTHING_KNOWN, Ahead, Verdict, settle_or_fail, stand, unexpected
 from dem_cli.statics.mechanism import describe

@@ -15,7 +15,7 @@ import numpy as np
 from dem_cli.contact.joints import only_points
 from dem_cli.errors import UsageError
 from dem_cli.model.scales import largest_structure
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import stage
 
 if TYPE_CHECKING:
     from dem_cli.engine.job import Job

@@ -21,7 +21,9 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.kernels import records as slot
 from dem_cli.model.model import Model
-from dem_cli.output.record import Frame, HistoryRow, Observer, Samples
+from dem_cli.records.frames import Frame
+from dem_cli.records.history_rows import HistoryRow, Samples
+from dem_cli.records.ports import Observer
 
 MU, DENSITY = 0.6, 2000.0
 

@@ -22,7 +22,8 @@ from typing import TYPE_CHECKING
 from dem_cli.engine.job import Job, Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.model.model import Model
-from dem_cli.output.record import FALLS, Observer
+from dem_cli.records.ports import Observer
+from dem_cli.records.statuses import FALLS
 from dem_cli.statics.equilibrium import settle
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ RECIPE = Recipe(
         "tests/house/test_imports.py::test_only_the_arrows_of_the_house[analyses.weight]", "tests/house/test_kinds.py",
     ),
     left_out=(
-        "dem_cli/output/record.py", "dem_cli/case/plausibility.py", "dem_cli/output/layout.py",
-        "dem_cli/output/resume/stages.py",
+        "dem_cli/records/frames.py", "dem_cli/case/plausibility.py", "dem_cli/output/layout.py",
+        "dem_cli/records/ports.py",
     ),
 )  # fmt: skip

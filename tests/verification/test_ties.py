@@ -23,7 +23,7 @@ from dem_cli.limit.cone import friction_of
 from dem_cli.limit.matrices import structure_of
 from dem_cli.limit.path import trace
 from dem_cli.links.link import FORCE, PLASTIC
-from dem_cli.output.record import FALLS
+from dem_cli.records.statuses import FALLS
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.warm_start import WarmStart
 

@@ -10,7 +10,7 @@ from dem_cli import api
 from dem_cli.analyses.solve import solve
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.limit.analysis import LEAST, LOWER, limit_loads
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 from studies.places import ROOT
 
 KEPT = (

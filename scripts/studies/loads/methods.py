@@ -22,7 +22,7 @@ from dem_cli.limit.cone import friction_of
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 # The fine path. Where joints slide in another order, another load is reached: increments must be small enough for it to
 # settle, and end only where the load grows next to nothing.

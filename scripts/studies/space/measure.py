@@ -14,7 +14,7 @@ from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.errors import CaseError, UsageError
 from dem_cli.limit.analysis import limit_loads
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 from studies.solution import from_file, from_tables
 from studies.space.by_hand import ByHand
 from studies.space.twins import twin
