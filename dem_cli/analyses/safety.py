@@ -10,6 +10,7 @@ import math
 import time
 from typing import TYPE_CHECKING, Any
 
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.engine.job import Outcome
 from dem_cli.engine.kinematics import why_moving
 from dem_cli.engine.settings import DEFAULT, Settings
@@ -127,7 +128,7 @@ class SafetyStudy:
     def _bound(self) -> Bound | str | None:
         if not self.analysis.limit:
             return None
-        moving = why_moving(self.case, self.model)
+        moving = why_moving(solver_request(self.case), self.model)
         if moving:
             return f"not tried: {moving}"
         self.observer.progress("limit analysis", 0.0, 0.0, None)

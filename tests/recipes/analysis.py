@@ -19,8 +19,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.job import Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.ensembles.case_job import CaseJob
 from dem_cli.model.model import Model
 from dem_cli.records.ports import Observer
 from dem_cli.records.statuses import FALLS
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome with the weight of the free blocks [N]."""
-    job = Job.start(case, model, observer, settings)
+    job = CaseJob.of_case(case, model, observer, settings)
     sim = job.first_simulation()
     track = job.track(sim)
     status = "ok" if settle(sim, track, job.budget).state == "equilibrium" else FALLS
