@@ -1,0 +1,79 @@
+"""The storey of the solvers stands alone: nothing of it imports case files, results or what is above, for types alone
+neither; and in a fresh interpreter it loads no library of theirs.
+"""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from parsed import nodes
+
+PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
+CORE = {"arithmetic", "code_checks", "contact", "dynamics", "engine", "geometry", "kernels", "laws", "limit", "links",
+        "model", "motion", "records", "statics"}  # fmt: skip
+BELOW = {"errors", "frozen_records", "input_limits", "interrupts", "late_modules", "registration", "version"}
+LEFT = {  # arrows that still lead out: this list only gets shorter
+    ("laws/barton.py", "case.base"),
+    ("laws/cap.py", "case.base"),
+    ("laws/crushing.py", "case.base"),
+    ("laws/degrading.py", "case.base"),
+    ("laws/displacement_path.py", "case.base"),
+    ("laws/fracture.py", "case.base"),
+    ("laws/law.py", "case.base"),
+    ("laws/mixed.py", "case.base"),
+    ("laws/mohr_coulomb.py", "case.base"),
+    ("laws/profile.py", "case.base"),
+    ("laws/rate.py", "case.base"),
+    ("laws/softening.py", "case.base"),
+    ("laws/stiffness.py", "case.base"),
+    ("links/drawn_bar.py", "case.base"),
+    ("links/link.py", "case.base"),
+    ("links/registry.py", "case.base"),
+    ("links/tie.py", "case.base"),
+    ("links/tie.py", "case.wording"),
+    ("motion/motion.py", "case.base"),
+    ("motion/table.py", "case.base"),
+    ("motion/table.py", "case.named_file"),
+    ("motion/table.py", "tables.spectrum"),
+}
+ABOVE = ("pydantic", "h5py", "click", "rich", "matplotlib")  # libraries of the other storeys
+CLEAN = ("contact.start", "contact.drawn_joints", "model.model", "records.ports", "geometry.topology")
+
+
+def leaving(path: Path) -> set[str]:
+    """What a file imports of the package from outside of this storey, as `room.file`."""
+    found = set()
+    for node in nodes(path):
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] == "dem_cli":
+            whole = node.module.split(".")[1:]
+            found |= {".".join(whole)} if whole else {alias.name for alias in node.names}
+        elif isinstance(node, ast.Import):
+            names = [alias.name.split(".") for alias in node.names]
+            found |= {".".join(name[1:]) or "__init__" for name in names if name[0] == "dem_cli"}
+    return {name for name in found if name.split(".")[0] not in CORE | BELOW}
+
+
+def test_no_arrow_leads_out_of_the_core():
+    found = {
+        (str(path.relative_to(PACKAGE)), name)
+        for room in CORE
+        for path in (PACKAGE / room).rglob("*.py")
+        for name in leaving(path)
+    }
+    assert not found - LEFT, f"these lead out: {sorted(found - LEFT)}"
+    assert not LEFT - found, f"these are gone: take them off the list: {sorted(LEFT - found)}"
+
+
+def test_what_is_below_the_core_imports_nothing_above_it():
+    assert not {name: above for name in BELOW if (above := leaving(PACKAGE / f"{name}.py"))}
+
+
+@pytest.mark.parametrize("module", CLEAN)
+def test_no_library_of_another_storey_is_loaded(module):
+    program = f"import sys, dem_cli.{module}; print(*sorted(set({ABOVE!r}) & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=60)
+    assert done.stdout.split() == []
