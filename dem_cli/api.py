@@ -67,10 +67,11 @@ def _case_model(
     from dem_cli.laws.registry import LAWS
     from dem_cli.links.registry import LINKS, PROFILES
     from dem_cli.structures.registry import GENERATORS
+    from dem_cli.tables.declared import table_of
 
     return case_model(
         {kind: GENERATORS[kind].parameters for kind in structures},
-        {name: LAWS[name].parameters for name in laws},
+        {name: table_of(LAWS[name].parameters) for name in laws},
         {kind: ANALYSES[kind].parameters for kind in analyses},
         {key: load() for key, load in TABLES.items() if key in keys},
         _motions() if "motion" in keys else None,

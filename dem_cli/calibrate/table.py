@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Positive, Vector
 from dem_cli.laws.profile import ProfileShape, pair
+from dem_cli.tables.declared import table_of
+
+ShapeTable: Any = table_of(ProfileShape)
 
 
-class NamedShape(ProfileShape):
+class NamedShape(ShapeTable):
     """[[calibration.shapes]]: a polygon but for its aperture."""
 
     name: Annotated[str, Field(min_length=1)] = Field(

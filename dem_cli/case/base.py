@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, model_validator
 
 from dem_cli.case.vector import VectorLength
+from dem_cli.declarations import KeyProblem
 from dem_cli.input_limits import MOST_BLOCKS
 
 Positive = Annotated[float, Field(gt=0.0)]
@@ -25,17 +26,6 @@ Twist = Annotated[tuple[float, ...], VectorLength(3, 6)]  # a vector, then turns
 
 
 NOTHING = "none"  # joints.NAME.head: head joints are not filled
-
-
-class KeyProblem(ValueError):
-    """Validation error of one key below the table being validated.
-
-    `raise KeyProblem("0 is not allowed; must be ...", "openings", 2, "width")`
-    """
-
-    def __init__(self, message: str, *keys: str | int):
-        super().__init__(message)
-        self.keys = keys
 
 
 class CaseModel(BaseModel):

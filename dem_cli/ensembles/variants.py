@@ -55,7 +55,7 @@ def _other_friction(case: Case, deviation: float, generator: np.random.Generator
     ):
         if isinstance(joint, FrictionJoint):
             factor = 1.0 + float(error)
-            joint = joint.model_copy(update={"friction": factor * joint.coefficient, "friction_angle_deg": None})
+            joint = joint.with_values(friction=factor * joint.coefficient, friction_angle_deg=None)
         joints[name] = joint
     return case.model_copy(update={"joints": joints})
 

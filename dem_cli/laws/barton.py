@@ -9,13 +9,12 @@ usual in rock mechanics, at 70° unless the case says otherwise.
 from __future__ import annotations
 
 import math
-from typing import Literal, Self
+from typing import Literal
 
 import numpy as np
-from pydantic import Field, model_validator
 
 from dem_cli.arithmetic import functions
-from dem_cli.case.base import KeyProblem, Positive
+from dem_cli.declarations import KeyProblem, Positive, parameter
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
 from dem_cli.laws.law import Law
@@ -26,23 +25,27 @@ class BartonJoint(StiffJoint):
     """[joints.*] with law = "barton"."""
 
     law: Literal["barton"] = "barton"
-    jrc: float = Field(
+    jrc: float = parameter(
         ge=0.0, le=20.0, description="joint roughness coefficient JRC [deg per decade of stress]", examples=[8.0]
     )
-    jcs: Positive = Field(description="joint compressive strength JCS [Pa]; above it the angle is φr", examples=[50e6])
-    residual_angle_deg: float = Field(ge=0.0, lt=90.0, description="residual friction angle φr [deg]", examples=[28.0])
-    largest_angle_deg: float = Field(
+    jcs: Positive = parameter(
+        description="joint compressive strength JCS [Pa]; above it the angle is φr", examples=[50e6]
+    )
+    residual_angle_deg: float = parameter(
+        ge=0.0, lt=90.0, description="residual friction angle φr [deg]", examples=[28.0]
+    )
+    largest_angle_deg: float = parameter(
         default=70.0, ge=0.0, lt=90.0, description="largest friction angle φ_max, at low stress [deg]"
     )
 
-    @model_validator(mode="after")
-    def _largest_is_larger(self) -> Self:
+    def check(self) -> None:
+        """The largest angle is at least the residual one."""
+        super().check()
         if self.largest_angle_deg < self.residual_angle_deg:
             raise KeyProblem(
                 f"{self.largest_angle_deg:g} is less than residual_angle_deg = {self.residual_angle_deg:g}",
                 "largest_angle_deg",
             )
-        return self
 
     @property
     def low_stress(self) -> float:

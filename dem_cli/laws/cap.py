@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dem_cli.case.base import KeyProblem
+from dem_cli.declarations import KeyProblem
 from dem_cli.kernels.jit import inline, named
 from dem_cli.laws.envelope import Envelope
 from dem_cli.laws.law import Law

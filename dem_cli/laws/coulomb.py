@@ -10,8 +10,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from pydantic import Field
-
+from dem_cli.declarations import parameter
 from dem_cli.kernels.jit import always_inline, inline
 from dem_cli.kernels.vec import axpy, dot, norm, scale
 from dem_cli.laws.envelope import frictional
@@ -24,7 +23,7 @@ class CoulombJoint(FrictionJoint):
     """[joints.*] with law = "coulomb"."""
 
     law: Literal["coulomb"] = "coulomb"
-    softening: Softening | None = Field(
+    softening: Softening | None = parameter(
         default=None,
         description="friction that falls with the slip: { residual, slip_start, slip_length }",
         examples=[{"residual": 0.8, "slip_start": 0.0009, "slip_length": 0.0001}],

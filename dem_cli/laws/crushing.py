@@ -10,9 +10,8 @@ from __future__ import annotations
 from typing import ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
 
-from dem_cli.case.base import Positive
+from dem_cli.declarations import Positive, parameter
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
 from dem_cli.laws.envelope import Envelope, envelope
@@ -25,7 +24,7 @@ class CrushingJoint(FrictionJoint):
 
     integrable: ClassVar[bool] = False
     law: Literal["crushing"] = "crushing"
-    compression: Positive = Field(description="compressive strength fc [Pa]", examples=[8e6])
+    compression: Positive = parameter(description="compressive strength fc [Pa]", examples=[8e6])
 
     @property
     def cracks(self) -> bool:

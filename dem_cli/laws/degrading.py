@@ -10,10 +10,8 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from pydantic import Field
-
 from dem_cli.arithmetic import functions
-from dem_cli.case.base import Positive
+from dem_cli.declarations import Positive, parameter
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
 from dem_cli.laws.decay import slip_on_decay
@@ -26,10 +24,10 @@ class DegradingJoint(FrictionJoint):
     """[joints.*] with law = "slip-degrading"."""
 
     law: Literal["slip-degrading"] = "slip-degrading"
-    residual: float = Field(
+    residual: float = parameter(
         ge=0.0, le=1.0, description="share r of the friction that is left in the end [-]", examples=[0.7]
     )
-    slip_scale: Positive = Field(description="slip S0 over which what goes falls to 1/e [m]", examples=[0.01])
+    slip_scale: Positive = parameter(description="slip S0 over which what goes falls to 1/e [m]", examples=[0.01])
 
 
 @inline

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dem_cli.arithmetic.products import product
-from dem_cli.case.base import CaseModel
+from dem_cli.declarations import Parameters
 from dem_cli.kernels.contact_point import make_press
 from dem_cli.laws.law import Law
 
@@ -46,7 +46,7 @@ class PathResponse(NamedTuple):
 
 def drive(
     law: Law,
-    table: CaseModel,
+    table: Parameters,
     path: ArrayLike,
     *,
     kn: float,

@@ -16,12 +16,11 @@ force drops at once. Where kn is "auto" the program does not check that.
 from __future__ import annotations
 
 import math
-from typing import ClassVar, Literal, Self
+from typing import ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
 
-from dem_cli.case.base import KeyProblem, NonNegative, Positive
+from dem_cli.declarations import KeyProblem, NonNegative, Positive, parameter
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
 from dem_cli.laws.cap import capped, check_cap
@@ -41,16 +40,16 @@ class FractureJoint(FrictionJoint):
     plane_points: ClassVar[int] = 5  # a joint cracks point by point, in time histories too
 
     law: Literal["fracture"] = "fracture"
-    tension: Positive = Field(description="tensile strength ft [Pa], at most cohesion / friction", examples=[0.1e6])
-    cohesion: Positive = Field(description="cohesion c [Pa]", examples=[0.15e6])
-    fracture_energy_tension: Positive = Field(description="energy G_I that opening takes [J/m2]", examples=[10.0])
-    fracture_energy_shear: Positive = Field(
+    tension: Positive = parameter(description="tensile strength ft [Pa], at most cohesion / friction", examples=[0.1e6])
+    cohesion: Positive = parameter(description="cohesion c [Pa]", examples=[0.15e6])
+    fracture_energy_tension: Positive = parameter(description="energy G_I that opening takes [J/m2]", examples=[10.0])
+    fracture_energy_shear: Positive = parameter(
         description="energy G_II that sliding takes beside friction [J/m2]", examples=[50.0]
     )
-    friction_residual: NonNegative | None = Field(
+    friction_residual: NonNegative | None = parameter(
         default=None, description="friction coefficient μr of the crack [-]; default: as before", examples=[0.6]
     )
-    compression: Positive | None = Field(
+    compression: Positive | None = parameter(
         default=None,
         description="compressive strength fc [Pa], more than the tensile one; default: never crushed",
         examples=[4e6],
@@ -66,8 +65,14 @@ class FractureJoint(FrictionJoint):
         """Friction coefficient of the crack [-]."""
         return self.coefficient if self.friction_residual is None else self.friction_residual
 
-    @model_validator(mode="after")
-    def _tension_within_the_cone(self) -> Self:
+    def check(self) -> None:
+        """Tension ends at the tip of the cone, friction does not grow, and the springs are stiff enough."""
+        super().check()
+        self._tension_within_the_cone()
+        self._crushed_beyond_all_else()
+        self._stiffer_than_it_softens()
+
+    def _tension_within_the_cone(self) -> None:
         if self.tension * self.coefficient > self.cohesion * (1.0 + 1e-9):
             raise KeyProblem(
                 f"{self.tension:g} Pa is beyond the tip of the cone; "
@@ -76,15 +81,11 @@ class FractureJoint(FrictionJoint):
             )
         if self.residual > self.coefficient:
             raise KeyProblem(f"{self.residual:g} is more than friction = {self.coefficient:g}", "friction_residual")
-        return self
 
-    @model_validator(mode="after")
-    def _crushed_beyond_all_else(self) -> Self:
+    def _crushed_beyond_all_else(self) -> None:
         check_cap(self.compression, self.tension)
-        return self
 
-    @model_validator(mode="after")
-    def _stiffer_than_it_softens(self) -> Self:
+    def _stiffer_than_it_softens(self) -> None:
         for key, strength, energy in (("kn", "tension", "tension"), ("ks", "cohesion", "shear")):
             steepest = getattr(self, strength) ** 2 / getattr(self, f"fracture_energy_{energy}")
             stiffness = getattr(self, key)
@@ -94,7 +95,6 @@ class FractureJoint(FrictionJoint):
                     f"must be more than {strength}² / fracture_energy_{energy} = {steepest:g} Pa/m",
                     key,
                 )
-        return self
 
 
 @inline

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import Self
 
-from pydantic import Field, model_validator
-
+from dem_cli.declarations import parameter
 from dem_cli.laws.stiffness import StiffJoint
 
 
 class FrictionJoint(StiffJoint):
     """Stiffness and friction of a joint."""
 
-    friction: float | None = Field(
+    friction: float | None = parameter(
         default=None, ge=0.0, le=1000.0, description="friction coefficient tan(φ) [-]", examples=[0.6]
     )
-    friction_angle_deg: float | None = Field(
+    friction_angle_deg: float | None = parameter(
         default=None, ge=0.0, lt=90.0, description="friction angle φ [deg], instead of friction", examples=[31.0]
     )
 
-    variation: float = Field(
+    variation: float = parameter(
         default=0.0,
         ge=0.0,
         le=1.0,
@@ -30,12 +28,12 @@ class FrictionJoint(StiffJoint):
         examples=[0.15],
     )
 
-    @model_validator(mode="after")
-    def _one_of_two(self) -> Self:
+    def check(self) -> None:
+        """Friction is given once."""
+        super().check()
         if (self.friction is None) == (self.friction_angle_deg is None):
             given = "both are given" if self.friction is not None else "none is given"
             raise ValueError(f"give either 'friction' or 'friction_angle_deg' ({given})")
-        return self
 
     @property
     def coefficient(self) -> float:

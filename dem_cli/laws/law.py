@@ -25,10 +25,10 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from dem_cli.case.base import CaseModel
+from dem_cli.declarations import Parameters
 from dem_cli.laws.envelope import Envelope
 
-JointTable = TypeVar("JointTable", bound=CaseModel)
+JointTable = TypeVar("JointTable", bound=Parameters)
 
 
 @dataclass(frozen=True)

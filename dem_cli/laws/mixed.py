@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from dem_cli.case.base import CaseModel
+from dem_cli.declarations import Parameters
 from dem_cli.kernels.jit import inline, named
 from dem_cli.laws.envelope import Envelope, envelope
 from dem_cli.laws.law import Law
@@ -49,7 +49,7 @@ def mixed(laws: tuple[Law, ...]) -> Law:
     straight, falls = all(law.envelope for law in laws), any(law.residual for law in laws)
     return Law(
         name=" + ".join(law.name for law in laws),
-        parameters=CaseModel,
+        parameters=Parameters,
         function=function,
         columns=lambda table, kn: (),
         shear_limit=each(lambda law: law.shear_limit),

@@ -15,12 +15,11 @@ as far open as it was.
 from __future__ import annotations
 
 import math
-from typing import ClassVar, Literal, Self
+from typing import ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
 
-from dem_cli.case.base import KeyProblem, NonNegative, Positive
+from dem_cli.declarations import KeyProblem, NonNegative, Positive, parameter
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, dot, load, norm, scale, store
 from dem_cli.laws.cap import capped, check_cap
@@ -39,24 +38,24 @@ class MohrCoulombJoint(FrictionJoint):
     plane_points: ClassVar[int] = 5  # a joint cracks point by point, in time histories too
 
     law: Literal["mohr-coulomb"] = "mohr-coulomb"
-    cohesion: NonNegative = Field(default=0.0, description="cohesion c [Pa]", examples=[0.1e6])
-    tension: NonNegative = Field(
+    cohesion: NonNegative = parameter(default=0.0, description="cohesion c [Pa]", examples=[0.1e6])
+    tension: NonNegative = parameter(
         default=0.0,
         description="tensile strength ft [Pa], at most cohesion / friction: there the shear strength ends",
         examples=[0.05e6],
     )
-    dilation_deg: float = Field(
+    dilation_deg: float = parameter(
         default=0.0, ge=0.0, lt=90.0, description="dilation angle ψ [deg], at most the friction angle", examples=[5.0]
     )
-    dilation_slip: NonNegative | None = Field(
+    dilation_slip: NonNegative | None = parameter(
         default=None, description="slip zdil up to which the joint dilates [m]; default: without end", examples=[0.005]
     )
-    cohesion_residual: NonNegative = Field(default=0.0, description="cohesion after failure [Pa]")
-    tension_residual: NonNegative = Field(default=0.0, description="tensile strength after failure [Pa]")
-    friction_residual: NonNegative | None = Field(
+    cohesion_residual: NonNegative = parameter(default=0.0, description="cohesion after failure [Pa]")
+    tension_residual: NonNegative = parameter(default=0.0, description="tensile strength after failure [Pa]")
+    friction_residual: NonNegative | None = parameter(
         default=None, description="friction coefficient after failure [-]; default: as before", examples=[0.5]
     )
-    compression: Positive | None = Field(
+    compression: Positive | None = parameter(
         default=None,
         description="compressive strength fc [Pa], more than the tensile one, without dilation; default: never crushed",
         examples=[4e6],
@@ -72,18 +71,23 @@ class MohrCoulombJoint(FrictionJoint):
         """Friction coefficient after failure [-]."""
         return self.coefficient if self.friction_residual is None else self.friction_residual
 
-    @model_validator(mode="after")
-    def _residual_is_less(self) -> Self:
+    def check(self) -> None:
+        """The residual strengths are at most the first ones, and each tension ends at the tip of its cone."""
+        super().check()
+        self._residual_is_less()
+        self._tension_within_the_cone()
+        self._crushed_beyond_all_else()
+        self._dilates_less_than_it_rubs()
+
+    def _residual_is_less(self) -> None:
         for key in ("cohesion", "tension"):
             left, whole = getattr(self, f"{key}_residual"), getattr(self, key)
             if left > whole:
                 raise KeyProblem(f"{left:g} is more than '{key}' = {whole:g}", f"{key}_residual")
         if self.residual > self.coefficient:
             raise KeyProblem(f"{self.residual:g} is more than friction = {self.coefficient:g}", "friction_residual")
-        return self
 
-    @model_validator(mode="after")
-    def _tension_within_the_cone(self) -> Self:
+    def _tension_within_the_cone(self) -> None:
         for key, friction in (("", self.coefficient), ("_residual", self.residual)):
             tension, cohesion = getattr(self, f"tension{key}"), getattr(self, f"cohesion{key}")
             if tension * friction > cohesion * (1.0 + 1e-9):
@@ -92,24 +96,19 @@ class MohrCoulombJoint(FrictionJoint):
                     f"must be at most cohesion / friction = {cohesion / friction:g} Pa",
                     f"tension{key}",
                 )
-        return self
 
-    @model_validator(mode="after")
-    def _crushed_beyond_all_else(self) -> Self:
+    def _crushed_beyond_all_else(self) -> None:
         check_cap(self.compression, self.tension)
         if self.compression is not None and self.dilation_deg > 0.0:
             raise KeyProblem("not allowed with 'compression': a joint that is crushed does not dilate", "dilation_deg")
-        return self
 
-    @model_validator(mode="after")
-    def _dilates_less_than_it_rubs(self) -> Self:
+    def _dilates_less_than_it_rubs(self) -> None:
         angle = math.degrees(math.atan(self.residual))
         if self.dilation_deg > angle * (1.0 + 1e-9):
             raise KeyProblem(
                 f"{self.dilation_deg:g} is more than the friction angle, {angle:g} degrees: sliding would make energy",
                 "dilation_deg",
             )
-        return self
 
 
 @inline

@@ -4,50 +4,48 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
-
-from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive
+from dem_cli.declarations import KeyProblem, Limits, NonNegative, Parameters, Positive, Share, parameter
 
 MOST_SIDES = 50
 SHORTEST = 1e-6  # of the longest side: below it corners are one
 
-Sides = Annotated[int, Field(ge=2, le=MOST_SIDES)]
-Share = Annotated[float, Field(gt=0.0, lt=1.0)]
+Sides = Annotated[int, Limits(ge=2, le=MOST_SIDES)]
 
 
-class ProfileShape(CaseModel):
+class ProfileShape(Parameters):
     """A convex polygon on a flat surface, but for its size: each number is a value or a range to draw from."""
 
-    sides: Sides | tuple[Sides, Sides] | None = Field(
+    sides: Sides | tuple[Sides, Sides] | None = parameter(
         default=None, description="number of sides, or [lowest, highest]; default: as many as lengths", examples=[3]
     )
-    lengths: Annotated[tuple[Positive | tuple[Positive, Positive], ...], Field(min_length=1)] | None = Field(
+    lengths: Annotated[tuple[Positive | tuple[Positive, Positive], ...], Limits(min_length=1)] | None = parameter(
         default=None,
         description="lengths of the sides [m], from left to right or from top to bottom; scaled to the length of "
         "the joint; each a value or [lowest, highest], one for all sides or one per side; default: equal sides",
         examples=[[0.016, 0.008, 0.016]],
     )
-    central: Share | tuple[Share, Share] | None = Field(
+    central: Share | tuple[Share, Share] | None = parameter(
         default=None,
         description="instead of lengths: share of the middle side [-]; the others are equal",
         examples=[0.2],
     )
-    keep: Literal["aperture", "angle", "lengths"] = Field(
+    keep: Literal["aperture", "angle", "lengths"] = parameter(
         default="aperture",
         description="what stays where a joint is not as long as the lengths add up to; lengths: the polygon keeps its "
         "size, its middle in the middle of the joint, its outer sides cut off or longer",
     )
-    over: Literal["joint", "face"] = Field(
+    over: Literal["joint", "face"] = parameter(
         default="joint",
         description="what the polygon spans; joint: each joint has its own; face: the whole edge of the upper block, "
         "of which each joint has a part",
     )
-    only: Literal["bed", "head", "all"] = Field(
+    only: Literal["bed", "head", "all"] = parameter(
         default="all", description="which joints have it; bed: those flatter than 45°; head: steeper ones; all: both"
     )
 
-    @model_validator(mode="after")
-    def _sides_and_lengths(self) -> ProfileShape:
+    def check(self) -> None:
+        """Sides, lengths and the share of the middle one go together."""
+        super().check()
         given = 0 if self.lengths is None else len(self.lengths)
         if self.lengths is not None and self.central is not None:
             raise ValueError("'lengths' and 'central' are given; a profile has one of them")
@@ -69,7 +67,6 @@ class ProfileShape(CaseModel):
             raise KeyProblem(f"{found} sides have none in the middle; with 'central' the number is odd", "sides")
         if self.keep != "aperture" and self.lengths is None:
             raise KeyProblem(f"'{self.keep}' is not allowed without 'lengths' [m]: no length to keep it from", "keep")
-        return self
 
     @property
     def number(self) -> tuple[int, int]:
@@ -80,14 +77,14 @@ class ProfileShape(CaseModel):
 class Profile(ProfileShape):
     """[joints.NAME.profile]: contact surfaces that are not plane."""
 
-    aperture: Positive | tuple[NonNegative, Positive] = Field(
+    aperture: Positive | tuple[NonNegative, Positive] = parameter(
         description="distance from the line through the ends of the polygon to its lowest point [m]", examples=[1e-4]
     )
 
-    @model_validator(mode="after")
-    def _apertures(self) -> Profile:
+    def check(self) -> None:
+        """The aperture, too, is from its lowest to its highest value."""
+        super().check()
         _in_order(self.aperture, "aperture")
-        return self
 
     @property
     def ranges(self) -> dict[str, Any]:

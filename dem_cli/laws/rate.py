@@ -10,12 +10,11 @@ meaning (limit loads, gravity, settlements) all slip is slow: μ = μs.
 from __future__ import annotations
 
 import math
-from typing import Literal, Self
+from typing import Literal
 
 import numpy as np
-from pydantic import Field, model_validator
 
-from dem_cli.case.base import KeyProblem, NonNegative, Positive
+from dem_cli.declarations import KeyProblem, NonNegative, Positive, parameter
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
 from dem_cli.laws.envelope import frictional
@@ -27,20 +26,20 @@ class RateJoint(FrictionJoint):
     """[joints.*] with law = "rate-dependent"; its friction is the static one."""
 
     law: Literal["rate-dependent"] = "rate-dependent"
-    friction_dynamic: NonNegative = Field(
+    friction_dynamic: NonNegative = parameter(
         description="friction coefficient μd of fast slip [-], at most the static one", examples=[0.5]
     )
-    velocity: Positive = Field(
+    velocity: Positive = parameter(
         description="speed of slip vc over which static friction falls to dynamic [m/s]", examples=[0.05]
     )
 
-    @model_validator(mode="after")
-    def _dynamic_is_less(self) -> Self:
+    def check(self) -> None:
+        """Dynamic friction is at most the static one."""
+        super().check()
         if self.friction_dynamic > self.coefficient:
             raise KeyProblem(
                 f"{self.friction_dynamic:g} is more than the static friction, {self.coefficient:g}", "friction_dynamic"
             )
-        return self
 
 
 @inline

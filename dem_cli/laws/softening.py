@@ -11,25 +11,24 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from pydantic import Field
 
-from dem_cli.case.base import CaseModel
+from dem_cli.declarations import Parameters, parameter
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, dot, scale
 from dem_cli.laws.envelope import frictional
 from dem_cli.laws.law import Law
 
 
-class Softening(CaseModel):
+class Softening(Parameters):
     """softening of a Coulomb joint: friction that falls with the slip; constant, then linear, then constant."""
 
-    residual: float = Field(
+    residual: float = parameter(
         ge=0.0, le=1.0, description="share β of the friction that is left in the end [-]", examples=[0.8]
     )
-    slip_start: float = Field(
+    slip_start: float = parameter(
         ge=0.0, description="slip ΔU1 at which the friction starts to fall [m]", examples=[0.0009]
     )
-    slip_length: float = Field(
+    slip_length: float = parameter(
         ge=0.0, description="further slip ΔU2 over which it falls, linearly; 0: at once [m]", examples=[0.0001]
     )
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
-
-from dem_cli.case.base import CaseModel, KeyProblem, Name
+from dem_cli.declarations import KeyProblem, Limits, Name, Parameters, Positive, parameter
 from dem_cli.laws.profile import Profile
 
 # Contact points of a plane joint whose stiffness is a property but is not integrated, by dimension; in 3D along each
@@ -14,10 +12,10 @@ from dem_cli.laws.profile import Profile
 BENDING_POINTS = {2: 5, 3: 3}
 SECTION = 16  # that with which a joint is as strong as its whole section: contact/layout.py, and there SECTION as well
 AREA_POINTS = {"vertices": 2, "vertices+centre": 3}  # in 3D; in 2D as stiff in bending
-Stiffness = Literal["auto"] | Annotated[float, Field(gt=0.0)]
+Stiffness = Literal["auto"] | Positive
 
 
-class StiffJoint(CaseModel):
+class StiffJoint(Parameters):
     """Normal and shear stiffness of a joint per unit area, its profile or the number of its contact points."""
 
     integrable: ClassVar[bool] = True  # carries no tension, and gives back all work across the joint
@@ -27,16 +25,18 @@ class StiffJoint(CaseModel):
     if TYPE_CHECKING:
         law: str  # each law's own table declares it, with its name as the only value
 
-    kn: Stiffness = Field(
+    kn: Stiffness = parameter(
         default="auto", description="normal stiffness [Pa/m], or 'auto': stiff enough to drop out", examples=[1e10]
     )
-    ks: Stiffness = Field(default="auto", description="shear stiffness [Pa/m], or 'auto': equal to kn", examples=[4e9])
-    profile: Profile | None = Field(
+    ks: Stiffness = parameter(
+        default="auto", description="shear stiffness [Pa/m], or 'auto': equal to kn", examples=[4e9]
+    )
+    profile: Profile | None = parameter(
         default=None,
         description="shape of contact surfaces that are not plane; default: plane",
         examples=[{"sides": 3, "aperture": 1e-4}],
     )
-    points: Annotated[int, Field(ge=2, le=9)] | Literal["vertices", "vertices+centre", "section"] | None = Field(
+    points: Annotated[int, Limits(ge=2, le=9)] | Literal["vertices", "vertices+centre", "section"] | None = parameter(
         default=None,
         description="contact points of a plane joint: so many, at Gauss-Lobatto places; in 3D so many along each side "
         "of the area of contact, or at its vertices alone, or at its centre as well; section: 16, in 3D 57, with "
@@ -47,18 +47,18 @@ class StiffJoint(CaseModel):
         examples=[5],
     )
 
-    head: Name | None = Field(
+    head: Name | None = parameter(
         default=None,
         description="the joint, by its name in [joints], between blocks side by side in one course; 'none': such head "
         "joints are not filled, and nothing acts between these blocks however they move; default: like all others",
         examples=["perpend"],
     )
 
-    @model_validator(mode="after")
-    def _points_of_plane_joints(self) -> StiffJoint:
+    def check(self) -> None:
+        """Points are those of plane joints."""
+        super().check()
         if self.profile is not None and self.points is not None:
             raise KeyProblem("not allowed with 'profile': its vertices are the contact points", "points")
-        return self
 
     @property
     def asks_for_points(self) -> bool:

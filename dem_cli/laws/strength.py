@@ -30,16 +30,16 @@ def strengths(joint: StiffJoint) -> dict[str, float]:
 def reduced(joint: StiffJoint, factor: float, which: Collection[str]) -> StiffJoint:
     """The joint with the strengths `which` (of KEYS) divided by `factor`; a factor below 1 makes it stronger.
 
-    Raises pydantic.ValidationError where the result is beyond what the law allows.
+    Raises ValueError, as `Parameters` do, where the result is beyond what the law allows.
     """
-    data = joint.model_dump(exclude_unset=True)
+    data = {name: getattr(joint, name) for name in joint.names_given}
     if isinstance(joint, FrictionJoint) and "friction" in which:
         data.pop("friction_angle_deg", None)
         data["friction"] = joint.coefficient
     for key in (key for name in which for key in KEYS[name] if data.get(key) is not None):
         data[key] = data[key] / factor
     _keep_within(data, joint)
-    return type(joint).model_validate(data)
+    return type(joint)(**data)
 
 
 def _keep_within(data: dict[str, Any], joint: StiffJoint) -> None:

@@ -16,6 +16,7 @@ from dem_cli.kernels.records import FixedJoints
 from dem_cli.laws.law import Law
 from dem_cli.laws.mixed import mixed, row
 from dem_cli.laws.registry import LAWS
+from dem_cli.tables.declared import table_of
 
 LIKE = {2: ((0.0, 0.0), (0.0,)), 3: ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))}
 
@@ -45,7 +46,7 @@ class Joint(NamedTuple):
 
 def joint(law: str, stiffness: dict[str, float] | None = None, **keys: Any) -> Joint:
     """The law by its name in case files, with the keys of its table."""
-    table = LAWS[law].parameters.model_validate({"law": law, **keys})
+    table = table_of(LAWS[law].parameters).model_validate({"law": law, **keys})
     return Joint(LAWS[law].of(table), table, **(stiffness or {}))
 
 

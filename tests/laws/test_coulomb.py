@@ -12,7 +12,7 @@ from dem_cli.laws.registry import LAWS
 
 KN, KS, MU = 2.0e6, 1.0e6, 0.6
 COULOMB = LAWS["coulomb"]
-TABLE = COULOMB.parameters.model_validate({"law": "coulomb", "friction": MU})
+TABLE = COULOMB.parameters(friction=MU)
 
 
 def along(path):
@@ -68,7 +68,7 @@ def test_slides_in_the_direction_of_motion_in_3d():
 
 
 def test_angle_and_coefficient_say_the_same():
-    parameters = COULOMB.parameters.model_validate({"law": "coulomb", "friction_angle_deg": 31.0})
+    parameters = COULOMB.parameters(friction_angle_deg=31.0)
     assert COULOMB.columns(parameters, KN)[0] == pytest.approx(math.tan(math.radians(31.0)))
 
 

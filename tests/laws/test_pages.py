@@ -10,6 +10,7 @@ from studies.laws import page as page_module
 from studies.laws.diagrams import PAGES
 
 from dem_cli.laws.registry import LAWS
+from dem_cli.tables.declared import table_of
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "docs" / "laws"
@@ -25,7 +26,7 @@ def test_every_law_has_a_page():
 def test_the_page_is_the_current_one(page):
     found = (FOLDER / f"{page.name}.md").read_text(encoding="utf-8")
     assert found == page_module.text(page), "run scripts/study laws"
-    for key in page.law.parameters.model_fields.keys() - {"law"}:
+    for key in page.law.parameters.declared.keys() - {"law"}:
         assert f"| `{key}` |" in found
     for name in re.findall(r"\]\(([\w./-]+)\)", found):
         assert (FOLDER / name).exists(), name
@@ -33,7 +34,7 @@ def test_the_page_is_the_current_one(page):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_the_example_is_a_joint(page):
-    table = LAWS[page.key].parameters.model_validate({"law": page.key, **page.keys})
+    table = table_of(LAWS[page.key].parameters).model_validate({"law": page.key, **page.keys})
     assert LAWS[page.key].of(table) is page.law
 
 

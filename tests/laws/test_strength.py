@@ -52,6 +52,6 @@ def test_what_else_a_law_has_stays():
 
 
 def test_every_law_but_two_has_strengths():
-    without = {name for name, law in LAWS.items() if not {"friction", "cohesion"} & set(law.parameters.model_fields)}
+    without = {name for name, law in LAWS.items() if not {"friction", "cohesion"} & set(law.parameters.declared)}
     assert without == {"barton", "elastic"}
     assert strengths(BartonJoint(jrc=5.0, jcs=1e8, residual_angle_deg=30.0)) == {}

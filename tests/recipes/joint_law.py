@@ -16,9 +16,8 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
-from dem_cli.case.base import Positive
+from dem_cli.declarations import Positive, parameter
 from dem_cli.kernels.jit import inline
 from dem_cli.kernels.vec import axpy, norm, scale
 from dem_cli.laws.envelope import Envelope, envelope
@@ -30,7 +29,7 @@ class TrescaJoint(StiffJoint):
     """[joints.*] with law = "tresca"."""
 
     law: Literal["tresca"] = "tresca"
-    shear_strength: Positive = Field(description="shear strength τ [Pa]", examples=[5e4])
+    shear_strength: Positive = parameter(description="shear strength τ [Pa]", examples=[5e4])
 
 
 @inline

@@ -10,6 +10,7 @@ import numpy as np
 from dem_cli.laws.displacement_path import PathResponse, drive
 from dem_cli.laws.law import Law
 from dem_cli.laws.registry import LAWS
+from dem_cli.tables.declared import table_of
 
 
 class Graph(NamedTuple):
@@ -60,7 +61,7 @@ class LawPage(NamedTuple):
     def along(self, path: Any, **options: Any) -> PathResponse:
         """A point of 1 m² moved along a path: forces are stresses."""
         keys = self.keys | options.pop("keys", {})
-        table = LAWS[self.key].parameters.model_validate({"law": self.key, **keys})
+        table = table_of(LAWS[self.key].parameters).model_validate({"law": self.key, **keys})
         return drive(LAWS[self.key], table, path, kn=self.kn, ks=self.ks, **options)
 
 

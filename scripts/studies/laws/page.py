@@ -10,12 +10,13 @@ import tomli_w
 from dem_cli.case.base import CaseModel
 from dem_cli.case.keys import CaseKey, CaseTable
 from dem_cli.laws.stiffness import StiffJoint
+from dem_cli.tables.declared import table_of
 from studies.laws.diagrams import PAGES
 from studies.laws.driven_point import LawPage
 from studies.template import filled
 from studies.template import table as markdown
 
-COMMON = tuple(StiffJoint.model_fields)  # keys of every joint, at the end of the table
+COMMON = tuple(StiffJoint.declared)  # keys of every joint, at the end of the table
 
 
 def text(page: LawPage) -> str:
@@ -58,10 +59,10 @@ def example(page: LawPage) -> str:
 
 def parameters(page: LawPage) -> list[str]:
     """Tables of the keys; the keys that all joints have come last."""
-    model, head = page.law.parameters, ("key", "unit", "range", "default", "meaning")
+    model, head = table_of(page.law.parameters), ("key", "unit", "range", "default", "meaning")
     own = [key for key in model.model_fields if key != "law" and key not in COMMON]
     table = [markdown(head, [row(model, key) for key in own])] if own else []
-    if not issubclass(model, StiffJoint):
+    if not issubclass(page.law.parameters, StiffJoint):
         return [*table, "These are the keys of `softening`; the others are those of [coulomb](coulomb.md)."]
     shared = markdown(head, [row(model, key) for key in COMMON])
     return [*table, "Of every joint, whatever its law:", shared]

@@ -20,7 +20,7 @@ RATIO, LOWEST, SLID = 0.68, 0.483, 0.12  # mean and lowest ratio of last to firs
 def barton(stress: float, **keys: float) -> float:
     """Friction coefficient at a normal stress [Pa], by the law of the program; peperino by default."""
     law = LAWS["barton"]
-    table = law.parameters.model_validate({"law": "barton", **(keys or PEPERINO)})
+    table = law.parameters(**(keys or PEPERINO))
     columns = np.array([law.columns(table, 1.0)])
     return float(law.shear_limit(columns, np.array([stress]), np.zeros((1, 0)), np.ones(1))[0] / stress)
 
@@ -33,7 +33,7 @@ def barton_numbers() -> dict[str, str]:
         errors.append(100.0 * (law / mean - 1.0))
         unit = f"{stress:g} ({stress * KG_PER_CM2 * 1e-3:.2f} kPa)"
         rows.append((unit, f"{mean:g} ± {deviation:g}", f"{law:.3f}", minus(f"{errors[-1]:+.1f} %")))
-    low = LAWS["barton"].parameters.model_validate({"law": "barton", **PEPERINO}).low_stress
+    low = LAWS["barton"].parameters(**PEPERINO).low_stress
     return {
         "table": markdown(("normal stress [kg/cm²]", "measured tan φ", "law", "error"), rows),
         "mean": f"{np.mean(np.abs(errors)):.1f} %",

@@ -11,6 +11,7 @@ from scipy.spatial import ConvexHull
 from dem_cli.contact.caps import cap_over, centroid, half_profile, has_cap, slopes, steepest
 from dem_cli.contact.layout import PointLayout, draw
 from dem_cli.laws.profile import Profile
+from dem_cli.tables.declared import table_of
 
 UP = np.array([0.0, 0.0, 1.0])
 WIDE, DEEP = 0.4, 0.3  # [m]
@@ -29,7 +30,7 @@ SHAPES = [
 
 
 def layout(seed=1, **table) -> PointLayout:
-    return PointLayout(**Profile(**table).ranges, seed=seed)
+    return PointLayout(**table_of(Profile)(**table).ranges, seed=seed)
 
 
 def polygon(sides: int, turned: float = 0.3) -> np.ndarray:

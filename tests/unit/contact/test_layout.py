@@ -13,12 +13,13 @@ from dem_cli.contact.layout import PointLayout, draw, lobatto, steepest
 from dem_cli.geometry.profile import angles
 from dem_cli.laws.coulomb import CoulombJoint
 from dem_cli.laws.profile import Profile
+from dem_cli.tables.declared import table_of
 
 keys = st.tuples(st.integers(0, 10**6), st.integers(0, 10**6))
 
 
 def layout(seed=1, **table) -> PointLayout:
-    return PointLayout(**Profile(**table).ranges, seed=seed)
+    return PointLayout(**table_of(Profile)(**table).ranges, seed=seed)
 
 
 def test_shape_c_of_the_thesis():
@@ -128,16 +129,16 @@ def test_three_points_are_simpsons_rule():
 )
 def test_profiles_that_make_no_sense(table, message):
     with pytest.raises(ValidationError, match=message):
-        Profile(**table)
+        table_of(Profile)(**table)
 
 
 def test_points_and_profile_exclude_each_other():
     assert CoulombJoint(friction=0.6).contact_points(2) == 2
     assert CoulombJoint(friction=0.6, points=5).contact_points(2) == 5
     with pytest.raises(ValidationError, match="not allowed with 'profile'"):
-        CoulombJoint(friction=0.6, points=3, profile={"sides": 3, "aperture": 1e-4})
+        table_of(CoulombJoint)(friction=0.6, points=3, profile={"sides": 3, "aperture": 1e-4})
     with pytest.raises(ValidationError):
-        CoulombJoint(friction=0.6, points=1)
+        table_of(CoulombJoint)(friction=0.6, points=1)
 
 
 def test_how_steep_a_profile_may_be():

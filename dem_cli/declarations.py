@@ -1,0 +1,217 @@
+"""Declared parameters of a law, a link or a motion: meaning, unit, range, default and example, in plain Python.
+
+A class of `Parameters` names them; its instances are frozen records that need nothing else. The table of a case file,
+its messages and its pages follow from the declaration (tables/declared.py).
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+import operator
+from collections.abc import Callable, Mapping
+from functools import cache
+from inspect import get_annotations
+from types import MappingProxyType, UnionType
+from typing import (
+    Annotated,
+    Any,
+    ClassVar,
+    Literal,
+    NamedTuple,
+    Self,
+    Union,
+    dataclass_transform,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
+
+REQUIRED: Any = ...  # in place of a default: the parameter must be given
+KEEPS: dict[str, Callable[[Any, Any], bool]] = {  # whether a value keeps each of `Limits`
+    "gt": operator.gt,
+    "ge": operator.ge,
+    "lt": operator.lt,
+    "le": operator.le,
+    "min_length": lambda value, least: len(value) >= least,
+    "max_length": lambda value, most: len(value) <= most,
+}
+
+
+class KeyProblem(ValueError):
+    """A parameter has a value that is not allowed, by itself or beside the others; raised while a table is checked.
+
+    `raise KeyProblem("0 is not allowed; must be ...", "openings", 2, "width")`: keys below that table.
+    """
+
+    def __init__(self, message: str, *keys: str | int):
+        super().__init__(message)
+        self.keys = keys
+
+
+class Limits(NamedTuple):
+    """Annotation of a number, a text or a tuple: its limits, or those on how many there are of it; None: none."""
+
+    gt: float | None = None
+    ge: float | None = None
+    lt: float | None = None
+    le: float | None = None
+    min_length: int | None = None
+    max_length: int | None = None
+
+    @property
+    def named(self) -> dict[str, Any]:
+        """Those that there are."""
+        return {name: limit for name, limit in self._asdict().items() if limit is not None}
+
+
+class SpaceLength(NamedTuple):
+    """Annotation of a tuple of numbers: how many there are in the plane and in space."""
+
+    planar: int
+    spatial: int
+
+
+Positive = Annotated[float, Limits(gt=0.0)]
+NonNegative = Annotated[float, Limits(ge=0.0)]
+Share = Annotated[float, Limits(gt=0.0, lt=1.0)]
+Name = Annotated[str, Limits(min_length=1)]
+SpaceVector = Annotated[tuple[float, ...], SpaceLength(2, 3)]  # a point, vector or force in the space of the case
+
+
+class Parameter(NamedTuple):
+    """Declaration of one parameter.
+
+    words: description, with the unit in brackets, and examples; check: of the value alone.
+    """
+
+    default: Any = REQUIRED
+    words: Mapping[str, Any] = MappingProxyType({})
+    limits: Limits = Limits()
+    check: Callable[[Any], Any] | None = None
+
+
+def parameter(
+    *,
+    description: str,
+    default: Any = REQUIRED,
+    examples: list[Any] | None = None,
+    check: Callable[[Any], Any] | None = None,
+    **limits: Any,
+) -> Any:
+    """A parameter of a class of `Parameters`; its conventions: case/keys.py.
+
+    limits: gt, ge, lt, le; examples: where there is no default to show; check: raises KeyProblem, else returns the
+    value.
+    """
+    words = {"description": description} | ({"examples": examples} if examples else {})
+    return Parameter(default, words, Limits(**limits), check)
+
+
+@dataclass_transform(kw_only_default=True, frozen_default=True, field_specifiers=(parameter,))
+class Parameters:
+    """Values of declared parameters by name, which nobody can change; relations among them: `check`."""
+
+    declared: ClassVar[dict[str, Parameter]] = {}
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Takes the parameters out of the body of a class."""
+        super().__init_subclass__(**options)
+        own = {name: vars(cls).get(name, REQUIRED) for name, kind in get_annotations(cls).items() if _is_value(kind)}
+        for name in own.keys() & vars(cls).keys():
+            delattr(cls, name)
+        inherited = {name: one for base in reversed(cls.__mro__[1:]) for name, one in _of(base).items()}
+        cls.declared = inherited | {
+            n: value if isinstance(value, Parameter) else Parameter(value) for n, value in own.items()
+        }
+
+    def __init__(self, **values: Any) -> None:
+        """Raises KeyProblem where a value is not allowed, TypeError where one is missing or unknown."""
+        unknown = values.keys() - self.declared.keys()
+        missing = {name for name, one in self.declared.items() if one.default is REQUIRED} - values.keys()
+        if unknown or missing:
+            raise TypeError(f"{type(self).__name__}: unknown {sorted(unknown)}, missing {sorted(missing)}")
+        own: Any = type(self)
+        kinds = _kinds(own)
+        for name, value in values.items():
+            one = self.declared[name]
+            if not _fits(value, kinds[name]) or not (value is None or _within(value, one.limits)):
+                raise KeyProblem(f"{value!r} is not allowed: {one.words.get('description', kinds[name])}", name)
+            if one.check:
+                one.check(value)
+        vars(self).update({name: one.default for name, one in self.declared.items()} | values, _given=frozenset(values))
+        self.check()
+
+    @property
+    def names_given(self) -> set[str]:
+        """Names of the values that were given; the others are defaults."""
+        return set(vars(self)["_given"])
+
+    def check(self) -> None:
+        """Raises KeyProblem, with the key, or ValueError where the values contradict each other."""
+
+    def checked(self, **values: Any) -> Self:
+        """A record with these values in place of its own. Raises as `check` does."""
+        return type(self)(**{name: getattr(self, name) for name in self.names_given} | values)
+
+    def with_values(self, **values: Any) -> Self:
+        """A copy with these values in place of its own, unchecked."""
+        made = copy.copy(self)
+        vars(made).update(values, _given=self.names_given | values.keys())
+        return made
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and _values(self) == _values(other)
+
+    def __hash__(self) -> int:
+        return hash(tuple(_values(self).values()))
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in _values(self).items())})"
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"cannot assign to '{name}': {type(self).__name__} is frozen")
+
+
+def _of(base: Any) -> dict[str, Parameter]:
+    return getattr(base, "declared", {})
+
+
+def _is_value(kind: Any) -> bool:
+    """Whether an annotation, as it is written, is that of a parameter."""
+    return not str(kind).startswith("ClassVar")
+
+
+def _values(record: Any) -> dict[str, Any]:
+    return {name: getattr(record, name) for name in record.declared}
+
+
+@cache
+def _kinds(declaring: Any) -> dict[str, Any]:
+    return get_type_hints(declaring, include_extras=True)
+
+
+def _fits(value: Any, kind: Any) -> bool:
+    """Whether a value is of an annotated type and within its limits."""
+    origin, parts = get_origin(kind), get_args(kind)
+    if origin is Annotated:
+        return _fits(value, parts[0]) and all(_within(value, limit) for limit in parts[1:])
+    if origin in (Union, UnionType):
+        return any(_fits(value, part) for part in parts)
+    if origin is Literal:
+        return value in parts
+    if origin is tuple:
+        many = parts[-1] is Ellipsis
+        kinds = parts[:1] * len(value) if many and isinstance(value, tuple) else parts
+        return isinstance(value, tuple) and len(value) == len(kinds) and all(map(_fits, value, kinds))
+    if kind in (float, int):
+        number = isinstance(value, (int, kind)) and not isinstance(value, bool)
+        return number and math.isfinite(value)
+    return isinstance(value, kind)
+
+
+def _within(value: Any, limits: Limits | SpaceLength) -> bool:
+    """Whether a value keeps within limits on it, or on how many there are of it."""
+    if isinstance(limits, SpaceLength):
+        return len(value) in limits
+    return all(KEEPS[name](value, limit) for name, limit in limits.named.items())

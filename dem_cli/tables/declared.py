@@ -1,0 +1,87 @@
+"""Tables of case files that follow from declared parameters of laws, links and motions.
+
+A law says what its parameters are (declarations.py); here that becomes a strict table with the same names, types,
+limits, descriptions and examples, whose instances are such records too.
+"""
+
+from __future__ import annotations
+
+from types import GenericAlias, UnionType
+from typing import Annotated, Any, Self, Union, get_args, get_origin, get_type_hints
+
+from pydantic import AfterValidator, Field, create_model, model_validator
+
+from dem_cli.case.base import CaseModel
+from dem_cli.case.vector import VectorLength
+from dem_cli.declarations import Limits, Parameter, Parameters, SpaceLength
+
+MADE: dict[type[Parameters], type[Any]] = {}  # the table of each class, made once
+
+
+class DeclaredTable(CaseModel):
+    """What every such table has: the relations that its declaration asks for."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Its fields are those of a table: it declares nothing for others."""
+
+    @model_validator(mode="after")
+    def _relations(self: Any) -> Any:
+        self.check()
+        return self
+
+    @property
+    def names_given(self) -> set[str]:
+        """Names of the keys that the case gives."""
+        return self.model_fields_set
+
+    def with_values(self, **values: Any) -> Self:
+        """A copy with these values in place of its own, unchecked."""
+        return self.model_copy(update=values)
+
+
+def table_of(declaring: type[Parameters]) -> type[Any]:
+    """The table of a case file with the parameters that a class declares; of the same name, and a subclass of it."""
+    if declaring not in MADE:
+        MADE[declaring] = _made(declaring)
+    return MADE[declaring]
+
+
+def _made(declaring: type[Parameters]) -> type[Any]:
+    kinds = get_type_hints(declaring, include_extras=True)
+    fields: dict[str, Any] = {name: _field(kinds[name], one) for name, one in declaring.declared.items()}
+    bases: Any = (DeclaredTable, declaring)
+    return create_model(
+        declaring.__name__,
+        __base__=bases,
+        __module__=declaring.__module__,
+        __doc__=declaring.__doc__,
+        **fields,
+    )
+
+
+def _field(kind: Any, one: Parameter) -> tuple[Any, Any]:
+    """Annotation and field of a parameter."""
+    kind = _in_a_case(kind)
+    if one.check is not None:
+        kind = Annotated[kind, AfterValidator(one.check)]
+    options: dict[str, Any] = {**one.words, **one.limits.named}
+    return kind, Field(default=one.default, **options)
+
+
+def _in_a_case(kind: Any) -> Any:
+    """An annotated type as a case file has it: records become tables, vectors have as many numbers as the case."""
+    origin, parts = get_origin(kind), get_args(kind)
+    if isinstance(kind, type) and issubclass(kind, Parameters):
+        return table_of(kind)
+    if origin is Annotated:
+        return Annotated[(_in_a_case(parts[0]), *map(_limit, parts[1:]))]
+    if origin in (Union, UnionType):
+        return Union[tuple(map(_in_a_case, parts))]  # noqa: UP007 (a tuple of members)
+    if origin is tuple:
+        return GenericAlias(tuple, tuple(map(_in_a_case, parts)))
+    return kind
+
+
+def _limit(limit: Limits | SpaceLength) -> Any:
+    """The same limit as tables have it."""
+    return VectorLength(*limit) if isinstance(limit, SpaceLength) else Field(**limit.named)
