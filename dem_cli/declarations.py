@@ -136,7 +136,7 @@ class Parameters:
         for name, value in values.items():
             one = self.declared[name]
             if not _fits(value, kinds[name]) or not (value is None or _within(value, one.limits)):
-                raise KeyProblem(f"{value!r} is not allowed: {one.words.get('description', kinds[name])}", name)
+                raise KeyProblem(f"{show(value)} is not allowed: {one.words.get('description', kinds[name])}", name)
             if one.check:
                 one.check(value)
         vars(self).update({name: one.default for name, one in self.declared.items()} | values, _given=frozenset(values))
@@ -171,6 +171,23 @@ class Parameters:
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"cannot assign to '{name}': {type(self).__name__} is frozen")
+
+
+def show(value: Any) -> str:
+    """A value as it stands in the file, not longer than a glance."""
+    if isinstance(value, str):
+        text = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in f"'{value}'")
+    elif isinstance(value, bool):
+        text = "true" if value else "false"
+    elif isinstance(value, float):
+        text = f"{value:.12g}"
+    elif isinstance(value, dict):
+        text = "a table" if value else "an empty table"
+    elif isinstance(value, (list, tuple)):
+        text = f"[{', '.join(show(item) for item in value)}]"
+    else:
+        text = str(value)
+    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _of(base: Any) -> dict[str, Parameter]:

@@ -159,7 +159,7 @@ ALLOWED: dict[str, set[str] | None] = {
     "exports": {"case.schema", "geometry", "model", "output"},
     "imports": {"contact.near_boxes", "geometry"},
     "laws": {"kernels"},
-    "links": {"case.base", "case.wording", "kernels"},
+    "links": {"kernels"},
     "tables": {"case.base", "case.selection", "case.vector"},
     "code_checks": {"motion.eurocode"},
     "motion": {"case.base", "case.named_file", "case.schema", "tables.spectrum"},

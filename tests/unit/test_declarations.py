@@ -14,7 +14,7 @@ from dem_cli.tables.declared import table_of
 
 ALONE = """
 import sys
-import dem_cli.laws.registry, dem_cli.laws.mohr_coulomb
+import dem_cli.laws.registry, dem_cli.laws.mohr_coulomb, dem_cli.links.registry, dem_cli.links.tie, dem_cli.links.bar
 from dem_cli.laws.displacement_path import drive
 law = dem_cli.laws.registry.LAWS["mohr-coulomb"]
 joint = law.parameters(friction=0.5, cohesion=1e4)
