@@ -149,7 +149,7 @@ def examine(loaded: LoadedCase, made: Assembly) -> None:
 
     found_odd: list[str] = []
     if loaded.case.motion:
-        from dem_cli.motion.ground_motions import check
+        from dem_cli.assembly.ground_motions import check
 
         with loaded.located():
             found_odd += map(loaded.render, check(loaded.case))

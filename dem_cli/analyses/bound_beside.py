@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from dem_cli.engine import measures
 from dem_cli.engine.kinematics import gaps_may_close
 from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.ensembles.case_job import CaseJob
 from dem_cli.errors import UsageError
-from dem_cli.output.record import ABOVE
+from dem_cli.records.statuses import ABOVE
 from dem_cli.statics.failure_bracket import OK
 
 if TYPE_CHECKING:
-    from dem_cli.engine.job import Job
     from dem_cli.engine.simulation import Simulation
     from dem_cli.limit.analysis import LimitLoads
     from dem_cli.statics.failure_bracket import FailureLoad
@@ -39,7 +39,7 @@ class StartBound:
     why_not: why there is none, in words, once `loads` was asked for; None: there is one.
     """
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: CaseJob) -> None:
         self.job = job
         self.why_not: str | None = None
         self.asked = bool(job.case.analysis.limit)
@@ -51,7 +51,7 @@ class StartBound:
         job.clock.imported("dem_cli.limit.analysis")
         from dem_cli.limit.analysis import limit_loads, require_scalable, taken_as_plane
 
-        properties, law = joint_properties(job.case, job.model, job.stiffness("fixed")), law_of(job.case)
+        properties, law = joint_properties(job.request, job.model, job.stiffness("fixed")), law_of(job.request)
         note = taken_as_plane(properties)
         if note and self.asked:
             job.warnings.append(note)
@@ -97,14 +97,14 @@ class StartBound:
             search.path_of_start = path.load
 
 
-def _differs_by_its_history(job: Job, sim: Simulation) -> bool:
+def _differs_by_its_history(job: CaseJob, sim: Simulation) -> bool:
     """Whether a failure load in geometry that moves is that of stiff joints with friction alone and without gaps."""
     if sim.kinematics == "fixed" or sim.properties.given or sim.properties.rough or sim.law.bonded:
         return False
-    return not gaps_may_close(job.case, job.model)
+    return not gaps_may_close(job.request, job.model)
 
 
-def beside(job: Job, search: FailureLoad, sim: Simulation, start: StartBound) -> dict[str, Any]:
+def beside(job: CaseJob, search: FailureLoad, sim: Simulation, start: StartBound) -> dict[str, Any]:
     """Keys of the summary that say what bounds the load of a search, or why nothing does; warns where it is above.
 
     sim: that of the search; it is left as it was.
@@ -158,7 +158,7 @@ def status_beside(status: str, found: dict[str, Any]) -> str:
     return ABOVE if above is not None and not above["explained"] and status == OK else status
 
 
-def _clamped(job: Job, search: FailureLoad, bound: float) -> list[str]:
+def _clamped(job: CaseJob, search: FailureLoad, bound: float) -> list[str]:
     """A word where ties or bars hold more in the associated load, as joints that slide open in it, than in the run."""
     limits = search.limits
     if not (job.model.links and search.found and limits is not None and limits.slides):
@@ -171,7 +171,7 @@ def _clamped(job: Job, search: FailureLoad, bound: float) -> list[str]:
     ]
 
 
-def _moved(job: Job, search: FailureLoad, sim: Simulation) -> Moved:
+def _moved(job: CaseJob, search: FailureLoad, sim: Simulation) -> Moved:
     """How far blocks had moved in the highest equilibrium, and what limit analysis says of the geometry there."""
     end = sim.save()
     sim.restore(search.standing)
@@ -184,7 +184,7 @@ def _moved(job: Job, search: FailureLoad, sim: Simulation) -> Moved:
         sim.restore(end)
 
 
-def _bound_there(job: Job, sim: Simulation, displacement: float) -> float | None:
+def _bound_there(job: CaseJob, sim: Simulation, displacement: float) -> float | None:
     """The associated load of the blocks of a simulation where they are, on faces as drawn; with fixed geometry on the
     joints of the start with the gaps that have closed since. displacement: how far they have moved [m].
     """

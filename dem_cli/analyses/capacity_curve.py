@@ -15,12 +15,13 @@ from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
 from dem_cli.analyses.curve_tracing import CurveTracing
 from dem_cli.analyses.pushover import INTERRUPTED, answer, buckling
 from dem_cli.dynamics.stability import standing
-from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.job import Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.ensembles.case_job import CaseJob
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 from dem_cli.statics import softer_joints
 from dem_cli.statics.agreement import doubts, load_range, percent
 from dem_cli.statics.compliance import check_moves, compliance
@@ -39,7 +40,7 @@ HANGS = "the peak of the curve hangs on its increments; the load is raised from 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a pushover under displacement control; status "not converged" where its peak could not be proved."""
-    job = Job.start(case, model, observer, settings)
+    job = CaseJob.of_case(case, model, observer, settings)
     sim = job.moving_simulation()
     search, found = FailureLoad(), dict[str, Any]()
     track, resolution = job.track(sim), case.analysis.resolution
@@ -68,7 +69,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     return job.outcome([sim], said | {"status": status_beside(said["status"], found)})
 
 
-def _curve_and_peak(job: Job, track: Track, search: FailureLoad, found: dict[str, Any]) -> None:
+def _curve_and_peak(job: CaseJob, track: Track, search: FailureLoad, found: dict[str, Any]) -> None:
     """The curve, then the bracket around its peak; what is found goes to `found` and `search` as it is found.
 
     Raises SolverError where the budget ends.

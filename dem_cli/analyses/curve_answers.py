@@ -9,10 +9,10 @@ import numpy as np
 from dem_cli.arithmetic.products import product
 from dem_cli.code_checks import local_mechanism, n2
 from dem_cli.code_checks.oscillator import participation
-from dem_cli.engine.job import Job
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import SavedState
-from dem_cli.motion.eurocode import SOILS, target_of
+from dem_cli.ensembles.case_job import CaseJob
+from dem_cli.motion.eurocode import SOILS
 from dem_cli.statics.bilinear import bilinear, load_at
 from dem_cli.statics.displacement_control import CapacityCurve
 from dem_cli.tables.code_check import CodeCheck
@@ -21,7 +21,7 @@ LEAST_FORCE = 1e-3  # of all weights, from which dead loads without mass are wor
 CORNER = 2  # of a row of motion/eurocode.py: SOILS
 
 
-def summary(job: Job, curve: CapacityCurve, force: float, scale: float) -> dict[str, Any]:
+def summary(job: CaseJob, curve: CapacityCurve, force: float, scale: float) -> dict[str, Any]:
     """What summary.json says of the curve; multipliers as users know them, displacements in m.
 
     force: sum of the forces of the live load at an internal multiplier of one [N]; scale: multiplier of users at that.
@@ -49,7 +49,7 @@ def summary(job: Job, curve: CapacityCurve, force: float, scale: float) -> dict[
     }
 
 
-def automatic(job: Job) -> bool:
+def automatic(job: CaseJob) -> bool:
     """Whether joints have a stiffness of the solver's choice: elastic displacements and periods are then nobody's."""
     return any(joint.kn == "auto" for joint in job.case.joints.values())
 
@@ -70,7 +70,7 @@ def shaken_masses(sim: Simulation, gravity: float) -> np.ndarray:
 class CurveCheck:
     """Check of a capacity curve against a spectrum: numbers for the summary, and what is to be said of it."""
 
-    def __init__(self, job: Job, sim: Simulation, table: CodeCheck) -> None:
+    def __init__(self, job: CaseJob, sim: Simulation, table: CodeCheck) -> None:
         self.job, self.sim, self.table = job, sim, table
         self.masses = shaken_masses(sim, job.case.gravity)
 
@@ -79,7 +79,7 @@ class CurveCheck:
 
         found: what the summary says of the curve. states: at rest under dead loads, and at the end of the curve.
         """
-        table, spectrum = self.table, target_of(self.table)
+        table, spectrum = self.table, self.table.target
         name = table.shape or ("end" if table.method == "mechanism" else "peak")
         before, end = states
         after = {"first": curve.at_first, "peak": curve.at_peak, "end": end}.get(name)

@@ -11,15 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 from dem_cli.analyses import curve_answers
 from dem_cli.engine import measures
+from dem_cli.ensembles.case_job import CaseJob
 from dem_cli.errors import SolverError
 from dem_cli.statics.displacement_control import CapacityCurve, CurvePoint, DisplacementControl, Followed, trace
 from dem_cli.statics.implicit_control import ImplicitControl, StiffControl, why_not
 
 if TYPE_CHECKING:
-    from dem_cli.engine.job import Job
     from dem_cli.engine.state import SavedState
     from dem_cli.engine.track import Track
-    from dem_cli.output.record import Frame, HistoryRow
+    from dem_cli.records.frames import Frame
+    from dem_cli.records.history_rows import HistoryRow
 
 RAMPS, IMPLICIT, MIXED = "ramps", "implicit", "ramps, long ones implicit"  # how increments were made
 INTERRUPTED = "interrupted"
@@ -31,7 +32,7 @@ FOLLOWING, AGAIN, BY_INCREMENTS = (
 )
 
 
-def followed(job: Job, track: Track) -> Followed | None:
+def followed(job: CaseJob, track: Track) -> Followed | None:
     """The displacement that the case controls instead of that of the live load (analysis.of); None: that one."""
     name = job.case.analysis.of
     if name is None:
@@ -47,7 +48,7 @@ class CurveTracing:
     its end; increments: how that was made; hangs: its peak hangs on the increments, so that it proves nothing.
     """
 
-    def __init__(self, job: Job, track: Track, elastic: float) -> None:
+    def __init__(self, job: CaseJob, track: Track, elastic: float) -> None:
         self.job, self.track, self.sim, self.elastic = job, track, track.sim, elastic
         self.of, self.at_rest = followed(job, track), track.sim.save()
         self.longest = job.case.analysis.follow / job.case.analysis.increments

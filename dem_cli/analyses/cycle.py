@@ -10,14 +10,15 @@ import numpy as np
 from dem_cli.analyses.curve_tracing import followed
 from dem_cli.dynamics.stability import buckles, standing
 from dem_cli.engine import measures
-from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.job import Outcome
 from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.track import Track
+from dem_cli.ensembles.case_job import CaseJob
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import FALLS, Observer
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import Observer, stage
+from dem_cli.records.statuses import FALLS
 from dem_cli.statics.compliance import check_moves, compliance
 from dem_cli.statics.displacement_control import DisplacementControl
 from dem_cli.statics.equilibrium import settle_or_fail, unexpected
@@ -31,7 +32,7 @@ FAILS = "fails on the way"
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a load path; status "ok" means that the structure stood at every load of it."""
-    job = Job.start(case, model, observer, settings)
+    job = CaseJob.of_case(case, model, observer, settings)
     job.skipped.append(f"failure search: the {job.case.analysis.control} follows the path of the case")
     sim = job.first_simulation() if case.analysis.control == "load" else job.moving_simulation()
     track = job.track(sim)
@@ -66,7 +67,7 @@ class LoadPath:
 
     LASTING = frozenset(("sim", "job", "track", "way"))
 
-    def __init__(self, job: Job, track: Track) -> None:
+    def __init__(self, job: CaseJob, track: Track) -> None:
         self.job, self.track, self.sim = job, track, track.sim
         self.found: dict[str, Any] = {"turning_points": [], "loops": []}
         self.way = WAYS[job.case.analysis.control](job, track)
@@ -123,7 +124,7 @@ class ByLoad:
 
     LASTING = frozenset(("sim", "job"))
 
-    def __init__(self, job: Job, track: Track) -> None:
+    def __init__(self, job: CaseJob, track: Track) -> None:
         self.job, self.sim, self.elastic = job, track.sim, compliance(track.sim)[1]
 
     def go(self, load: float) -> bool:
@@ -139,7 +140,7 @@ class ByDisplacement:
 
     LASTING = frozenset(("control",))
 
-    def __init__(self, job: Job, track: Track) -> None:
+    def __init__(self, job: CaseJob, track: Track) -> None:
         elastic = compliance(track.sim)[0]
         check_moves(track.sim, elastic)
         self.near = job.settings.displacement_control.near_target * job.case.analysis.step

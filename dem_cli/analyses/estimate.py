@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.analyses.estimate_cost import cost_of
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.engine.automatic_stiffness import needed_ratio, ratio_of, static_ratio
 from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
 from dem_cli.engine.measures import shares_of_blocks
@@ -41,18 +42,19 @@ def describe(case: Case, model: Model) -> Rows:
     """Label and text of each line of `dem check` that needs joints."""
     if case.analysis.kind in IN_SECONDS:
         return _shaking(case, model)
-    tilting = getattr(case.analysis, "pattern", None) == "tilt"
+    request = solver_request(case)
+    tilting = request.analysis.tilting
     scale = 1.0 if tilting else live_scale(model)
 
     def simulation(kinematics: str, ratio: float) -> Simulation:
-        properties = joint_properties(case, model, ratio, integrates=integrates_with(case, kinematics))
-        sim = Simulation(model, law_of(case), properties, kinematics, scale, tilting, DEFAULT)
+        properties = joint_properties(request, model, ratio, integrates=integrates_with(request, kinematics))
+        sim = Simulation(model, law_of(request), properties, kinematics, scale, tilting, DEFAULT)
         sim.use(1.0)  # masses at the limit of stability
         return sim
 
     wanted = case.analysis.kinematics
     moving = _visible(case) if wanted != "fixed" else None
-    moving = why_moving(case, model) if moving is None else moving
+    moving = why_moving(request, model) if moving is None else moving
     kinematics = "fixed" if moving is None else "large"
     sim = simulation(kinematics, _ratio(case, model, kinematics))
     needed = ratio_of(sim) if moving is None else needed_ratio(sim, getattr(case.analysis, "resolution", None))
@@ -88,14 +90,15 @@ def _shaking(case: Case, model: Model) -> Rows:
     from dem_cli.dynamics.history import damping_of_start, shaken
     from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
 
-    chosen = rocking_stiffness(case, model, DEFAULT)
+    request = solver_request(case)
+    chosen = rocking_stiffness(request, model, DEFAULT)
     settings = chosen.applied(DEFAULT)
-    sim = shaken(case, model, damping_of_start(case, model, settings), settings=settings)
+    sim = shaken(request, model, damping_of_start(request, model, settings), settings=settings)
     return [
         *_blocks(model, case.gravity),
         *_joints(case, sim),
         *_stiffness(case, sim),
-        *describe_shaking(case, sim, chosen.automatic),
+        *describe_shaking(case, request, sim, chosen.automatic),
         ("memory", _memory(sim)),
         *_links(model),
         ("monitors", _monitors(case)),

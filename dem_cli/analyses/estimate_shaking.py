@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from dem_cli.analyses.estimate_cost import cost_of_shaking
 from dem_cli.analyses.modes import touching_points
+from dem_cli.assembly.ground_motions import motions_of
 from dem_cli.dynamics.coda import longest_coda
 from dem_cli.dynamics.frequencies import modes, system
 from dem_cli.dynamics.ground import GroundMotion
@@ -16,33 +17,36 @@ from dem_cli.dynamics.time_step import TimeStep, time_step
 from dem_cli.dynamics.vibration_error import refined
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.ensembles.record_search import records_of, runs_per_record
-from dem_cli.motion.ground_motions import motions_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.motion.motion import Motion
+    from dem_cli.records.requests import SolverRequest
 
+Rows = list[tuple[str, str]]
 MOST_MOTIONS = 6  # that are listed
 SOFTER = DEFAULT.rocking.softer
 
 
-def describe_shaking(case: Case, sim: DynamicSimulation, automatic: bool) -> list[tuple[str, str]]:
+def describe_shaking(
+    case: Case, request: SolverRequest, sim: DynamicSimulation, automatic: bool
+) -> list[tuple[str, str]]:
     """Lines of `dem check`; automatic: some joints have the stiffness that the program chose.
 
     Raises CaseError where analysis.time_step is not stable, or nothing says how long to look, as a run does.
     """
-    analysis = case.analysis
+    analysis = request.shaking
     step = time_step(sim, analysis.margin, analysis.time_step, sim.damping.stiffening)
     ground = GroundMotion(_motions(case), sim.model)
-    step, drifts = refined(step, sim, ground.motions, duration_of(case, ground), analysis)
+    step, drifts = refined(step, sim, ground.motions, duration_of(request, ground), analysis)
     return [
         ("damping", sim.damping.words),
         ("highest frequency", step.cause),
         ("time step", _step(step)),
         *([("vibrations", drifts)] if drifts else []),
         ("first frequency", _first(sim)),
-        *_cost(case, sim, step, automatic),
+        *_cost(case, request, sim, step, automatic),
     ]
 
 
@@ -66,9 +70,11 @@ def _first(sim: DynamicSimulation) -> str:
     return f'{found.frequencies[0]:.4g} Hz, all joints that touch closed; kind = "modes" has those under gravity'
 
 
-def _cost(case: Case, sim: DynamicSimulation, step: TimeStep, automatic: bool) -> list[tuple[str, str]]:
+def _cost(
+    case: Case, request: SolverRequest, sim: DynamicSimulation, step: TimeStep, automatic: bool
+) -> list[tuple[str, str]]:
     analysis, ground = case.analysis, GroundMotion(motions_of(case), sim.model)
-    length = duration_of(case, ground)
+    length = duration_of(request, ground)
     checked = automatic and analysis.kind != "fragility"
     runs, said = _runs(case, checked)
     peak = "" if analysis.kind == "fragility" else f", {ground_words(motions_of(case))}"
@@ -76,7 +82,7 @@ def _cost(case: Case, sim: DynamicSimulation, step: TimeStep, automatic: bool) -
     if not math.isfinite(step.step):
         return rows
     steps = math.ceil(length / step.step)
-    more = math.ceil(longest_coda(case, sim.model) / step.step)
+    more = math.ceil(longest_coda(request, sim.model) / step.step)
     return [
         *rows,
         ("steps", f"{steps:,}"),

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.dynamics.bending_stiffness import bending_doubts
 from dem_cli.dynamics.braked_motion import braked_words
 from dem_cli.dynamics.coda import longest_coda, undecided
@@ -37,7 +38,10 @@ from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, told_pea
 from dem_cli.ensembles.variants import Variant
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import FALLS, MOVES, Observer, RunRow, distinct
+from dem_cli.output.distinct_names import distinct
+from dem_cli.records.history_rows import RunRow
+from dem_cli.records.ports import Observer
+from dem_cli.records.statuses import FALLS, MOVES
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -59,17 +63,18 @@ class FragilityStudy:
 
     def __init__(self, case: Case, model: Model, observer: Observer, settings: Settings, batch: Batch):
         self.case, self.model, self.observer, self.batch = case, model, observer, batch
+        self.request = solver_request(case)
         self.analysis: FragilityAnalysis = case.analysis
         self.started = time.perf_counter()
         self.records = records_of(case)
         self.names = distinct([record.name for record in self.records])
         self.motions = [motion for record in self.records for motion in record.components]
-        duration_of(case, GroundMotion(self.motions, model))  # which must be known
-        self.stiffness = rocking_stiffness(case, model, settings)
-        self.coda = longest_coda(case, model)
+        duration_of(self.request, GroundMotion(self.motions, model))  # which must be known
+        self.stiffness = rocking_stiffness(self.request, model, settings)
+        self.coda = longest_coda(self.request, model)
         self.settings = self.stiffness.applied(settings)
         self.warnings = [self.stiffness.doubt] if self.stiffness.turn > settings.rocking.doubtful else []
-        self.warnings += bending_doubts(case, model, settings)
+        self.warnings += bending_doubts(self.request, model, settings)
 
     def run(self) -> Outcome:
         """Rest, all runs, and what they say."""
@@ -122,7 +127,7 @@ class FragilityStudy:
             run, peak = self.batcher.done[trial], max(motion.peak for motion in self._motion(trial))
             acceleration = peak * self.rested[trial.structure].variant.motion
             rows.append(RunRow(trial.structure, self.names[trial.record], trial.intensity, acceleration,
-                               run.collapsed, run.time, run.how, told_peaks(self.case.monitor, run)))  # fmt: skip
+                               run.collapsed, run.time, run.how, told_peaks(self.request.monitors, run)))  # fmt: skip
         return rows
 
     # -- what the runs say -------------------------------------------------------------------------
@@ -206,7 +211,7 @@ class FragilityStudy:
             )
         braked = max((run.braked for run in self.batcher.done.values()), default=0.0)
         if braked > self.settings.doubts.governs:
-            self.warnings.append(braked_words(self.case, braked, " in one of the runs"))
+            self.warnings.append(braked_words(self.request.damping, braked, " in one of the runs"))
         worst = _worst(run.closure for run in self.batcher.done.values() if run.collapsed is False)
         if worst is not None and abs(worst) > self.settings.doubts.closure:
             self.warnings.append(f"the energy of a run that stood does not close: {worst:.2%} is missing")

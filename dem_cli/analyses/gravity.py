@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 from dem_cli.dynamics.stability import buckles
 from dem_cli.engine import measures
-from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.job import Outcome
 from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.ensembles.case_job import CaseJob
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import BUCKLED, FALLS, Observer
+from dem_cli.records.ports import Observer
+from dem_cli.records.statuses import BUCKLED, FALLS
 from dem_cli.statics.equilibrium import settle
 from dem_cli.statics.failure_test import moved_far
 
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a gravity analysis; status "ok" means that it stands."""
-    job = Job.start(case, model, observer, settings)
+    job = CaseJob.of_case(case, model, observer, settings)
     sim = job.first_simulation()
     track, start = job.track(sim), sim.places()
     found: dict[str, Any] = {}

@@ -7,7 +7,6 @@ are; a time history starts from the same state. Then all is linear: closed point
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,13 +17,16 @@ from dem_cli.dynamics.frequencies import Modes, highest_frequency, modes, system
 from dem_cli.engine import measures
 from dem_cli.engine.audit import unbending
 from dem_cli.engine.budget import Budget
-from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.job import Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
+from dem_cli.ensembles.case_job import CaseJob
 from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.model.model import Model
 from dem_cli.model.scales import mean_weight
-from dem_cli.output.record import FALLS, Frame, Observer
+from dem_cli.records.frames import Frame
+from dem_cli.records.ports import Observer
+from dem_cli.records.statuses import FALLS
 from dem_cli.statics.equilibrium import settle, stand
 
 if TYPE_CHECKING:
@@ -35,7 +37,7 @@ AXES = "xyz"
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a modal analysis. Raises CaseError where the structure has no mode with the number asked for."""
-    job = Job.start(case, model, observer, settings)
+    job = CaseJob.of_case(case, model, observer, settings)
     sim = _simulation(job)
     track = job.track(sim)
     found: dict[str, Any] = {}
@@ -49,16 +51,16 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     return job.outcome([sim], found)
 
 
-def _simulation(job: Job) -> Simulation:
+def _simulation(job: CaseJob) -> Simulation:
     """On joints that are the springs that they are. With a measured frequency their stiffness is a property of the
     structure, which has the contact points of such joints (laws/stiffness.py)."""
     sim = job.moving_simulation(elastic=True)
     if job.case.analysis.measured is None or not sim.properties.rigid.any():
         return sim
-    return replace(job, case=_scaled_case(job.case, sim, 1.0)).moving_simulation(elastic=True)
+    return job.with_case(_scaled_case(job.case, sim, 1.0)).moving_simulation(elastic=True)
 
 
-def _answer(job: Job, sim: Simulation) -> dict[str, Any]:
+def _answer(job: CaseJob, sim: Simulation) -> dict[str, Any]:
     """Keys of the summary; the shapes go to the observer as frames."""
     wanted, model = job.case.analysis, sim.model
     job.clock.progress("modes", 0.0, 0.0, None)
@@ -154,8 +156,8 @@ def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
     )
 
 
-def _doubts(job: Job, found: Modes, sim: Simulation) -> None:
-    job.warnings += unbending(job.case, sim)
+def _doubts(job: CaseJob, found: Modes, sim: Simulation) -> None:
+    job.warnings += unbending(job.request, sim)
     tables, rigid = job.case.joints, dict(zip(sim.properties.names, sim.properties.rigid, strict=True))
     names = [name for name, table in tables.items() if rigid[name] or (table.ks == "auto" and table.kn != "auto")]
     if names:
@@ -172,7 +174,7 @@ def _doubts(job: Job, found: Modes, sim: Simulation) -> None:
         )
 
 
-def _calibration(job: Job, sim: Simulation, computed: float) -> dict[str, Any]:
+def _calibration(job: CaseJob, sim: Simulation, computed: float) -> dict[str, Any]:
     """Joint stiffness at which the mode has the measured frequency: all kn and ks times (measured/computed)².
 
     That is exact where gravity closes the same points and its forces do not count. So gravity and modes are run again
@@ -250,10 +252,10 @@ def _scaled_case(case: Case, sim: Simulation, factor: float) -> Case:
     return case.model_copy(update={"joints": case.joints | joints, "materials": case.materials | moduli})
 
 
-def _frequency_with(job: Job, sim: Simulation, factor: float) -> float | None:
+def _frequency_with(job: CaseJob, sim: Simulation, factor: float) -> float | None:
     """The frequency of the measured mode [Hz] with stiffness scaled; None where the structure does not stand then."""
     wanted = job.case.analysis
-    again = _simulation(replace(job, case=_scaled_case(job.case, sim, factor)))
+    again = _simulation(job.with_case(_scaled_case(job.case, sim, factor)))
     try:
         if stand(again, Budget(min(sim.settings.modes.most_steps, wanted.max_steps))).state != "equilibrium":
             return None

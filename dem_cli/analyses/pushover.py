@@ -10,15 +10,17 @@ import numpy as np
 from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
 from dem_cli.dynamics.stability import buckles, standing
 from dem_cli.engine.automatic_stiffness import ratio_of
-from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.job import Outcome
 from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
 from dem_cli.engine.kinematics import fixed_beside
 from dem_cli.engine.properties import law_of
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
+from dem_cli.ensembles.case_job import CaseJob
 from dem_cli.errors import SolverError
 from dem_cli.model.model import Model
-from dem_cli.output.record import BUCKLED, FALLS, Observer
+from dem_cli.records.ports import Observer
+from dem_cli.records.statuses import BUCKLED, FALLS
 from dem_cli.statics import post_peak, softer_joints
 from dem_cli.statics.agreement import at_the_bound, doubts, histories, load_range, percent, unique
 from dem_cli.statics.compliance import compliance
@@ -40,7 +42,7 @@ MOTION, IMPOSSIBLE, BUCKLING = "motion", "limit analysis", "buckling"  # what fa
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome of a pushover; status "not converged" where the budget of steps ends before the proofs."""
-    job = Job.start(case, model, observer, settings)
+    job = CaseJob.of_case(case, model, observer, settings)
     start = StartBound(job)
     search, sim = _search(job, start)
     sims = [sim]
@@ -94,7 +96,7 @@ def _mechanism(sim: Simulation, search: FailureLoad, track: Track) -> dict[str, 
     return found | describe(sim, before)
 
 
-def _search(job: Job, start: StartBound) -> tuple[FailureLoad, Simulation]:
+def _search(job: CaseJob, start: StartBound) -> tuple[FailureLoad, Simulation]:
     """Gravity and the failure search, with geometry that moves where given joints are too soft to freeze it.
 
     That is decided before the search, by elastic displacements at the load that limit analysis allows at most; and
@@ -102,7 +104,7 @@ def _search(job: Job, start: StartBound) -> tuple[FailureLoad, Simulation]:
     of the start unless it is one of these that fails first.
     """
     analysis = job.case.analysis
-    closing = fixed_beside(job.case, job.model)
+    closing = fixed_beside(job.request, job.model)
     search, sim = FailureLoad(), job.first_simulation() if closing is None else job.simulation("fixed")
     rigid: float | None = None  # what the same blocks carry on stiff joints, or
     searched = False  # at most
@@ -128,7 +130,7 @@ def _search(job: Job, start: StartBound) -> tuple[FailureLoad, Simulation]:
         search, sim = FailureLoad(), job.simulation("large")
 
 
-def _raised(job: Job, sim: Simulation, track: Track, search: FailureLoad, rigid: float | None) -> float:
+def _raised(job: CaseJob, sim: Simulation, track: Track, search: FailureLoad, rigid: float | None) -> float:
     """Raises the load of a simulation from gravity until it fails, into `search`; how far given joints let blocks move
     before failure, in smallest edges, where that says that geometry has to move, else 0.
 
@@ -167,7 +169,7 @@ def _fails_beside(search: FailureLoad, sim: Simulation, closing: np.ndarray) -> 
     return bool(motion[closing].max() < sim.settings.mechanism.takes_part * motion.max())
 
 
-def buckling(job: Job) -> Callable[[Simulation], bool]:
+def buckling(job: CaseJob) -> Callable[[Simulation], bool]:
     """Whether a state at rest buckles, for searches."""
     return lambda sim: buckles(sim, job.budget) is not None
 
@@ -180,12 +182,12 @@ def _bound_of_the_start(search: FailureLoad, start: StartBound) -> float | None:
     return None if loads is None else loads.associated.upper
 
 
-def _may_move(job: Job, sim: Simulation) -> bool:
+def _may_move(job: CaseJob, sim: Simulation) -> bool:
     """Whether geometry may have to move because joints have a stiffness that the case gives."""
     return sim.properties.given and sim.kinematics == "fixed" and job.case.analysis.kinematics == "auto"
 
 
-def _expected_motion(job: Job, sim: Simulation, limits: RigidLimits) -> float:
+def _expected_motion(job: CaseJob, sim: Simulation, limits: RigidLimits) -> float:
     """Elastic displacement in smallest edges at the load that limit analysis allows at most, where that alone already
     says that geometry has to move; else 0.
     """
@@ -196,7 +198,7 @@ def _expected_motion(job: Job, sim: Simulation, limits: RigidLimits) -> float:
     return moved if moved > settings.soft * job.case.analysis.resolution else 0.0
 
 
-def _second_history(job: Job, load_search: LoadSearch) -> None:
+def _second_history(job: CaseJob, load_search: LoadSearch) -> None:
     """The path from gravity beside a load that limit analysis leaves open, where it is affordable.
 
     Where it ends elsewhere, or nowhere, rested or fell on the way, or a creep came to rest at a higher load, the load
@@ -254,14 +256,14 @@ def _off_the_load(peak: post_peak.CurvePeak, search: FailureLoad, scale: float, 
     return [f"the collapse was followed {why}: only its shape counts"]
 
 
-def _by_load(job: Job) -> bool:
+def _by_load(job: CaseJob) -> bool:
     """Whether the load of failure stays while the collapse is followed."""
     wanted = job.case.analysis.collapse
-    snaps = law_of(job.case).bonded or any(joint.profile for joint in job.case.joints.values())
+    snaps = law_of(job.request).bonded or any(joint.profile for joint in job.case.joints.values())
     return wanted == "load" or (wanted == "auto" and snaps)
 
 
-def _fall(job: Job, sim: Simulation, search: FailureLoad) -> tuple[Simulation, post_peak.CurvePeak]:
+def _fall(job: CaseJob, sim: Simulation, search: FailureLoad) -> tuple[Simulation, post_peak.CurvePeak]:
     """The collapse, in a simulation of its own."""
     until, frames = job.case.analysis.follow, job.case.output.snapshots
     load = search.carried / sim.live_scale

@@ -10,6 +10,7 @@ import math
 import time
 from typing import TYPE_CHECKING, Any
 
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.engine.job import Outcome
 from dem_cli.engine.kinematics import why_moving
 from dem_cli.engine.settings import DEFAULT, Settings
@@ -22,7 +23,7 @@ from dem_cli.ensembles.static_values import changed, checked_model, load_doubts,
 from dem_cli.errors import CaseError
 from dem_cli.laws.strength import strengths
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -127,7 +128,7 @@ class SafetyStudy:
     def _bound(self) -> Bound | str | None:
         if not self.analysis.limit:
             return None
-        moving = why_moving(self.case, self.model)
+        moving = why_moving(solver_request(self.case), self.model)
         if moving:
             return f"not tried: {moving}"
         self.observer.progress("limit analysis", 0.0, 0.0, None)

@@ -10,16 +10,17 @@ from dem_cli.arithmetic.products import product
 from dem_cli.dynamics.stability import buckles
 from dem_cli.engine import measures
 from dem_cli.engine.budget import Budget
-from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.job import Outcome
 from dem_cli.engine.joint_summary import END, joint_state
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.track import Track
+from dem_cli.ensembles.case_job import CaseJob
 from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.geometry.rotation import turned_as_one
 from dem_cli.model.model import Model
-from dem_cli.output.record import BUCKLED, FALLS, Observer
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import Observer, stage
+from dem_cli.records.statuses import BUCKLED, FALLS
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.mechanism import describe
 from dem_cli.statics.settlement_way import SettlementWay
@@ -34,7 +35,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     """Outcome of a settlement; status "ok" means that the structure stands afterwards. Raises CaseError without any."""
     if not case.settlement:
         raise CaseError([CaseProblem(("analysis", "kind"), "'settlement' needs at least one [[settlement]] table")])
-    job = Job.start(case, model, observer, settings)
+    job = CaseJob.of_case(case, model, observer, settings)
     job.skipped.append("failure search: the supports move, the load does not")
     sim = job.simulation("large", stiffness_ratio(model, settings.stiffness.settlement_overlap))
     track = job.track(sim)
@@ -117,7 +118,7 @@ def _move(way: SettlementWay, track: Track, frames: int, budget: Budget) -> str:
     return "ok" if stands else COLLAPSED
 
 
-def _collapse(case: Case, way: SettlementWay, job: Job) -> dict[str, Any]:
+def _collapse(case: Case, way: SettlementWay, job: CaseJob) -> dict[str, Any]:
     """How far the supports had moved when the structure ceased to stand, and how it falls; the end stays as it is."""
     sim = way.sim
     end = sim.save()

@@ -8,7 +8,7 @@ from dem_cli.analyses.registry import ANALYSES
 from dem_cli.engine.job import Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

@@ -16,16 +16,17 @@ from dem_cli.dynamics.extremes import without_meaning
 from dem_cli.dynamics.rocking_stiffness import RockingStiffness
 from dem_cli.engine.measures import largest_displacement
 from dem_cli.engine.settings import Settings
+from dem_cli.ensembles.case_job import CaseJob
 from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult
 from dem_cli.ensembles.variants import Variant
-from dem_cli.output.record import MONITOR_UNITS
+from dem_cli.records.history_rows import MONITOR_UNITS
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Monitor
     from dem_cli.dynamics.history import TimeHistory
     from dem_cli.engine.dynamic import DynamicSimulation
-    from dem_cli.engine.job import Job
     from dem_cli.motion.motion import Motion
+    from dem_cli.records.requests import MonitorRequest
 
 MOST_LISTED = 3  # monitors that a warning names
 WHY = (
@@ -35,6 +36,7 @@ WHY = (
 
 
 def checked(
+    job: CaseJob,
     history: TimeHistory,
     motions: Sequence[Motion],
     chosen: RockingStiffness,
@@ -45,7 +47,7 @@ def checked(
 
     settings: those without the choice.
     """
-    job, rocking = history.job, settings.rocking
+    rocking = settings.rocking
     found: dict[str, Any] = {"joint_stiffness": chosen.ratio, "elastic_turn": chosen.turn, "softer_joints_move": None}
     if history.still:
         job.skipped.append("a second run on softer joints: nothing rocked or slid")
@@ -60,9 +62,9 @@ def checked(
         job.contradictions.append(f"on softer joints it {'collapses' if run.collapsed else 'stands'}")
         said = f"{factor} the structure {'collapses' if run.collapsed else 'survives'}: {WHY}"
     elif not collapsed:
-        least = trifles(job.case.monitor, history.peaks, history.sim.smallest, job.case.gravity, settings)
+        least = trifles(job.request.monitors, history.peaks, history.sim.smallest, job.case.gravity, settings)
         moved = change(history.peaks, np.array(run.peaks), least)
-        moved[without_meaning(job.case.monitor, history.extremes.impacts)] = 0.0
+        moved[without_meaning(job.request.monitors, history.extremes.impacts)] = 0.0
         found["softer_joints_move"] = float(moved.max()) if len(moved) else None
         said = _doubts(job, factor, moved, rocking.moved)
     if chosen.turn > rocking.doubtful:
@@ -82,7 +84,7 @@ def _measured(factor: str, run: ShakenRunResult | None, moved: float | None) -> 
 
 
 def trifles(
-    monitors: Sequence[Monitor], peaks: np.ndarray, smallest: float, gravity: float, settings: Settings
+    monitors: Sequence[MonitorRequest], peaks: np.ndarray, smallest: float, gravity: float, settings: Settings
 ) -> np.ndarray:
     """Peaks that do not matter, (n,): a small share of the largest one of the same quantity, or what is no motion.
 
@@ -105,7 +107,7 @@ def change(one: np.ndarray, other: np.ndarray, least: np.ndarray) -> np.ndarray:
     return np.where(larger > least, np.abs(other - one) / np.where(larger > 0.0, larger, 1.0), 0.0)
 
 
-def _run(job: Job, motions: Sequence[Motion], settings: Settings) -> ShakenRunResult | None:
+def _run(job: CaseJob, motions: Sequence[Motion], settings: Settings) -> ShakenRunResult | None:
     """The same structure under the same motion; None where it does not stand."""
     same = Variant(job.case, job.model, 0, settings.statistics.largest_draw)
     rested = RestedStructure(same, motions, ProgressOnly(job.clock, job.clock.stages), settings)
@@ -116,7 +118,7 @@ def _run(job: Job, motions: Sequence[Motion], settings: Settings) -> ShakenRunRe
     return rested.shaken(motions, told=told) if rested.stands else None
 
 
-def _doubts(job: Job, factor: str, moved: np.ndarray, allowed: float) -> str:
+def _doubts(job: CaseJob, factor: str, moved: np.ndarray, allowed: float) -> str:
     """Peaks that moved by more than allowed, the worst first, in one sentence; empty where none did."""
     worst = [i for i in np.argsort(-moved, kind="stable") if moved[i] > allowed]
     if not worst:

@@ -16,20 +16,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.analyses.stiffness_check import checked
+from dem_cli.assembly.ground_motions import motions_of
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.dynamics.bending_stiffness import bending_doubts
 from dem_cli.dynamics.coda import longest_coda, undecided
 from dem_cli.dynamics.extremes import without_meaning
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
-from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.job import Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, each
+from dem_cli.ensembles.case_job import CaseJob
 from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult, told_peaks
 from dem_cli.ensembles.variants import Variant
 from dem_cli.model.model import Model
-from dem_cli.motion.ground_motions import motions_of
-from dem_cli.output.record import FALLS, MOVES, Observer, RunRow
+from dem_cli.records.history_rows import RunRow
+from dem_cli.records.ports import Observer
+from dem_cli.records.statuses import FALLS, MOVES
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -47,10 +51,10 @@ def run(
     case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT, batch: Batch | None = None
 ) -> Outcome:
     """Outcome of a time history, and how sensitive it is. Raises SolverError where it blows up."""
-    job = Job.start(case, model, observer, settings)
+    job = CaseJob.of_case(case, model, observer, settings)
     motions = motions_of(case)
     ground = GroundMotion(motions, model)
-    chosen = rocking_stiffness(case, model, settings)
+    chosen = rocking_stiffness(job.request, model, settings)
     job.settings = chosen.applied(settings)
     history = TimeHistory(job, ground)
     outcome = history.run()
@@ -60,8 +64,8 @@ def run(
             f"meant, with a peak of {ground.peak:.3g} m/s2?"
         )
     if chosen.automatic and outcome.summary["status"] == "ok":
-        outcome.summary |= checked(history, motions, chosen, outcome.summary["collapsed"], settings)
-    outcome.summary["warnings"] += bending_doubts(case, model, settings)
+        outcome.summary |= checked(job, history, motions, chosen, outcome.summary["collapsed"], settings)
+    outcome.summary["warnings"] += bending_doubts(job.request, model, settings)
     if doubtful(case) and not history.still and outcome.summary["status"] != FALLS:
         outcome.summary["warnings"].append(ONE_DRAW)
     if case.analysis.repeats and outcome.summary["status"] == "ok":
@@ -84,7 +88,7 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
     settings: those of the run beside it, with the same stiffness of "auto" joints.
     """
     started = time.perf_counter()
-    motions, quiet = motions_of(case), ProgressOnly(observer)
+    motions, quiet, request = motions_of(case), ProgressOnly(observer), solver_request(case)
     variants = [Variant(case, model, 1 + k, settings.statistics.largest_draw) for k in range(case.analysis.repeats)]
     structures = [RestedStructure(variant, motions, quiet, settings) for variant in variants]
     trials = [ShakingTrial(k, 0, 1.0) for k, rested in enumerate(structures) if rested.stands]
@@ -102,9 +106,9 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
         warnings.append(f"{fell} of {case.analysis.repeats} perturbed structures do not stand: left out")
     ended = [run for run in runs if run.ending]
     found = spread(ended, len(case.monitor))
-    for i in without_meaning(case.monitor, max((run.impacts for run in ended), default=0)):
+    for i in without_meaning(request.monitors, max((run.impacts for run in ended), default=0)):
         found["peaks"][i] = None
-    warnings += undecided(found["still_moving"], found["runs"], longest_coda(case, model))
+    warnings += undecided(found["still_moving"], found["runs"], longest_coda(request, model))
     return {
         "repeats": found | {"seconds": sum(run.seconds for run in runs)},
         "repeat_seconds": time.perf_counter() - started,
@@ -164,7 +168,7 @@ def _rows(
     return [
         RunRow(
             1 + trial.structure, "", 1.0, peak * structures[trial.structure].variant.motion, run.collapsed, run.time,
-            run.how, told_peaks(structures[trial.structure].case.monitor, run),
+            run.how, told_peaks(structures[trial.structure].request.monitors, run),
         )
         for trial, run in zip(trials, runs, strict=True)
     ]  # fmt: skip

@@ -9,12 +9,11 @@ import numpy as np
 from dem_cli.case.cross_references import WITH_REAL_MASSES
 from dem_cli.case.wording import either, show
 from dem_cli.errors import CaseError, CaseProblem
-from dem_cli.model.model import NO_RESTRAINTS, Model
+from dem_cli.model.model import MOTIONS, NO_RESTRAINTS, Model
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
-MOTIONS = {2: ("x", "y", "rotation"), 3: ("x", "y", "z", "rotation_x", "rotation_y", "rotation_z")}
 ROTATION = "rotation"  # of a block in space: about every axis
 
 

@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any
 
 from dem_cli import api
 from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.model.model import Model
-    from dem_cli.output.record import Observer
+    from dem_cli.records.ports import Observer
 
 FOLDER = Path(__file__).resolve().parent
 HEADS = "limit analysis, no friction in head joints"

@@ -14,7 +14,9 @@ from dem_cli.bench.kernels import POINT_STEPS, blocks_of, simulation
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import lines_of, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
-from dem_cli.output.record import Frame, HistoryRow, Observer
+from dem_cli.records.frames import Frame
+from dem_cli.records.history_rows import HistoryRow
+from dem_cli.records.ports import Observer
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

@@ -17,6 +17,7 @@ from dem_cli.bench.table import count, lines_of
 from dem_cli.bench.timing import TimedTask, in_turn
 
 if TYPE_CHECKING:
+    from dem_cli.assembly.solver_request import solver_request
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.engine.simulation import Simulation
 
@@ -73,7 +74,7 @@ def simulation(known: KnownStructure, kinematics: str) -> Simulation:
     from dem_cli.kernels import records as slot
 
     case, model = known.build()
-    sim = Simulation(model, law_of(case), joint_properties(case, model), kinematics)
+    sim = Simulation(model, law_of(solver_request(case)), joint_properties(solver_request(case), model), kinematics)
     sim.compile()
     sim.set_load(LOAD)
     sim.advance(FIRST_STEPS, slot.HOLD_LOAD)
@@ -82,12 +83,14 @@ def simulation(known: KnownStructure, kinematics: str) -> Simulation:
 
 def history(known: KnownStructure, fraction: float) -> DynamicSimulation:
     """A compiled time history under gravity on ground at rest, some hundred steps old."""
+    from dem_cli.assembly.solver_request import solver_request
     from dem_cli.dynamics.history import shaken
     from dem_cli.dynamics.time_step import time_step
     from dem_cli.engine.viscous import Damping
     from dem_cli.kernels import records as slot
 
-    sim = shaken(*known.build(), Damping(fraction=fraction))
+    case, model = known.build()
+    sim = shaken(solver_request(case), model, Damping(fraction=fraction))
     sim.compile()
     sim.advance(FIRST_STEPS, slot.HOLD_LOAD)
     sim.begin(time_step(sim).step)

@@ -15,7 +15,8 @@ from dem_cli.bench.cases import FOLDER
 from dem_cli.bench.record import BenchOptions, GroupResult, Measurement, record
 from dem_cli.bench.table import count, lines_of, percent, seconds
 from dem_cli.bench.timing import TimedTask, in_turn
-from dem_cli.output.record import Observer, Samples
+from dem_cli.records.history_rows import Samples
+from dem_cli.records.ports import Observer
 
 MARGINS = (0.9, 0.5, 0.25, 0.1, 0.05)  # of the largest stable step
 USUAL = 0.25

@@ -15,8 +15,8 @@ from dem_cli.cli.words import console
 from dem_cli.cli.workers import side_by_side
 from dem_cli.errors import CaseError, CaseProblem, DemError, OutputError, SolverError, UsageError
 from dem_cli.interrupts import Interrupts
-from dem_cli.output.record import Observer
 from dem_cli.pipeline.batches import usable_cores
+from dem_cli.records.ports import Observer
 from dem_cli.version import __version__
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from dem_cli.calibrate.trials import CalibrationTrial
     from dem_cli.case.reader import LoadedCase
     from dem_cli.output.folder import OutputFolder
-    from dem_cli.output.record import HistoryRow
+    from dem_cli.records.history_rows import HistoryRow
 
 CALIBRATED_CASE, TRIALS_TABLE, TRIALS_PICTURE = "calibrated.toml", "calibration.csv", "calibration.png"
 

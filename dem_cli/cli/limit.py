@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from dem_cli.limit.analysis import LimitLoads
     from dem_cli.limit.snapshot import Collapse
     from dem_cli.model.model import Model
-    from dem_cli.output.record import Frame
+    from dem_cli.records.frames import Frame
 
 
 @click.command("limit", short_help="Failure load by rigid-block limit analysis.")
@@ -56,6 +56,7 @@ def command(
 ) -> int:
     """Failure load of CASE by limit analysis of its rigid blocks, as they stand at the start, and bounds of it."""
     from dem_cli import api
+    from dem_cli.assembly.solver_request import solver_request
     from dem_cli.engine.properties import joint_properties, law_of
     from dem_cli.limit.analysis import LEAST, LOWER, limit_loads, require_scalable, taken_as_plane
     from dem_cli.output.summary import to_json
@@ -64,7 +65,8 @@ def command(
     loaded = load(case, overrides)
     require_multiplier(loaded)
     model = api.build_model(loaded)
-    properties, law = joint_properties(loaded.case, model), law_of(loaded.case)
+    request = solver_request(loaded.case)
+    properties, law = joint_properties(request, model), law_of(request)
     if loaded.case.analysis.pattern == "tilt":
         require_scalable(model, properties, law)
     if note := taken_as_plane(properties):
@@ -124,7 +126,7 @@ def require_multiplier(loaded: LoadedCase) -> None:
 
 def summarised(loaded: LoadedCase, model: Model, found: LimitLoads, heads: str) -> dict[str, Any]:
     """What summary.json holds for kind "limit"."""
-    from dem_cli.limit.rigid_wall import hand_check
+    from dem_cli.analyses.hand_check import hand_check
     from dem_cli.output.summary import ordered
 
     check = hand_check(loaded.case)

@@ -65,9 +65,8 @@ def command(case: str, overrides: Sequence[str], output: Path | None, as_json: b
 
 def groups_of(loaded: LoadedCase, compare: bool = True) -> list[RecordGroup]:
     """The records of every table. Raises UsageError for a case without motion, CaseError on a bad record."""
-    from dem_cli.motion.eurocode import target_of
+    from dem_cli.assembly.ground_motions import suites_of
     from dem_cli.motion.eurocode_suites import clauses
-    from dem_cli.motion.ground_motions import suites_of
     from dem_cli.motion.intensity_measures import fit
 
     tables = [table for table in loaded.case.motion if table.kind != "none"]
@@ -82,7 +81,7 @@ def groups_of(loaded: LoadedCase, compare: bool = True) -> list[RecordGroup]:
         target = compared = None
         judged: Sequence[Clause] = ()
         if table.kind == "artificial":
-            target = target_of(table).scaled(abs(table.scale))
+            target = table.target.scaled(abs(table.scale))
             compared = fit(motions, target, table.first_period) if compare else None
             judged = clauses(motions, table) if compare else ()
         groups.append(RecordGroup(motions, target, compared, getattr(table, "number", 1) - 1, judged))

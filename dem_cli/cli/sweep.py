@@ -210,7 +210,7 @@ class SweepProgress:
 
     def write(self) -> dict[str, Any]:
         """The tables and sweep.json; the outcome."""
-        from dem_cli.output.record import FALLS
+        from dem_cli.records.statuses import FALLS
         from dem_cli.sweep.run import FAILED, WAITING
         from dem_cli.sweep.table import rows, write
 

@@ -19,7 +19,7 @@ from dem_cli.geometry.outlines import away_from, furthest
 from dem_cli.geometry.rotation import beside, tangents_of, turning
 from dem_cli.model.copies import repeated
 from dem_cli.model.model import Model
-from dem_cli.output.record import STATES, ContactRecord, JointPlaces, JointStates
+from dem_cli.records.frames import STATES, ContactRecord, JointPlaces, JointStates
 
 OPEN, STICKING, SLIDING = (STATES.index(name) for name in ("open", "sticking", "sliding"))
 
@@ -61,7 +61,7 @@ class DrawnJoints:
     def at(self, positions: np.ndarray, orientations: np.ndarray, contacts: ContactRecord) -> JointInstant:
         """Joints of blocks that have moved to these centroids [m], (n_blocks, d), and turned, under contact forces.
 
-        Of several instants as output.record.FrameStack has them: the joints of each lie behind those before.
+        Of several instants as records.frames.FrameStack has them: the joints of each lie behind those before.
         """
         if len(positions) > len(self.centroids):
             return self._copies(len(positions) // len(self.centroids)).at(positions, orientations, contacts)

@@ -19,18 +19,18 @@ from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
+    from dem_cli.records.requests import SolverRequest
 
 SOFTER = 10.0  # times that blocks turn further with points of bending, which are three times as soft, at the very most
 
 
-def bending_doubts(case: Case, model: Model, settings: Settings = DEFAULT) -> list[str]:
+def bending_doubts(request: SolverRequest, model: Model, settings: Settings = DEFAULT) -> list[str]:
     """Words for joints whose stiffness is a property, and that have points at their ends although bending counts.
 
-    None where the case says how many points they have, or where blocks hardly turn further with those of bending.
+    None where it is given how many points they have, or where blocks hardly turn further with those of bending.
     """
     ratio = settings.stiffness.dynamics
-    ends, bending = (joint_properties(case, model, ratio, lands=lands, integrates=False) for lands in (True, False))
+    ends, bending = (joint_properties(request, model, ratio, lands=lands, integrates=False) for lands in (True, False))
     soft = np.array([one != other for one, other in zip(ends.layouts, bending.layouts, strict=True)])
     if not soft.any() or model.fixed.all():
         return []

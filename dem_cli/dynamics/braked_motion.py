@@ -14,9 +14,9 @@ from dem_cli.contact.drawn_joints import DrawnJoints
 from dem_cli.engine import measures
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
     from dem_cli.engine.dynamic import DynamicSimulation
-    from dem_cli.output.record import Energy
+    from dem_cli.records.history_rows import Energy
+    from dem_cli.records.requests import DampingRequest
 
 
 class BrakedMotion:
@@ -56,12 +56,12 @@ class BrakedMotion:
         return self.energy / whole if whole > 0.0 else 0.0
 
 
-def braked_words(case: Case, share: float, runs: str = "") -> str:
+def braked_words(damping: DampingRequest, share: float, runs: str = "") -> str:
     """A warning for damping that took so much; runs: of which, where there are many."""
-    table = case.damping.rayleigh
-    if table is None or not table.of_mass:
+    rayleigh = damping.rayleigh
+    if rayleigh is None or not rayleigh.mass:
         remedy = "without damping.mass they move freely"
-    elif table.frequencies is not None:
+    elif rayleigh.two_frequencies:
         remedy = "rayleigh with one 'frequency' damps vibration alone"
     else:
         remedy = "rayleigh without its part of mass damps vibration alone"

@@ -19,16 +19,15 @@ from dem_cli.arithmetic.products import product
 from dem_cli.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen
 from dem_cli.engine.measures import contact_record
 from dem_cli.engine.settings import DEFAULT
-from dem_cli.output.record import COLLAPSED, MOVES, ROCKS, STOOD
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import stage
+from dem_cli.records.statuses import COLLAPSED, MOVES, ROCKS, STOOD
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
     from dem_cli.dynamics.extremes import Extremes, MotionStretch
     from dem_cli.dynamics.time_step import TimeStep
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.model.model import Model
-    from dem_cli.tables.analysis import ShakingAnalysis
+    from dem_cli.records.requests import ShakingRequest, SolverRequest
 
 
 class Ending(NamedTuple):
@@ -68,25 +67,25 @@ class _Coda:
         self.quiet_at = 0.0  # and when that began [s]
 
 
-def longest_coda(case: Case, model: Model) -> float:
+def longest_coda(request: SolverRequest, model: Model) -> float:
     """How long a structure that still moves after its motion is followed at most [s].
 
-    What the case says, else `least_limit`, or longer where it is tall: slow rocking goes by √(R/g), with half the
+    What is asked for, else `least_limit`, or longer where it is tall: slow rocking goes by √(R/g), with half the
     height of the free blocks for R.
     """
-    given, history = case.analysis.coda, DEFAULT.history
+    given, history = request.shaking.coda, DEFAULT.history
     if given is not None:
         return float(given)
     heights = (model.centroids[model.vertex_blocks] + model.vertices)[~model.fixed[model.vertex_blocks], -1]
-    if case.gravity <= 0.0 or not len(heights):
+    if request.gravity <= 0.0 or not len(heights):
         return history.least_limit
-    return max(history.least_limit, history.limit * math.sqrt(0.5 * float(np.ptp(heights)) / case.gravity))
+    return max(history.least_limit, history.limit * math.sqrt(0.5 * float(np.ptp(heights)) / request.gravity))
 
 
 @stage
 def ending(
     sim: DynamicSimulation,
-    analysis: ShakingAnalysis,
+    analysis: ShakingRequest,
     longest: float,
     step: TimeStep,
     stretch: int,
@@ -116,7 +115,7 @@ def ending(
             coda.quiet.look()
 
 
-def _ended(sim: DynamicSimulation, analysis: ShakingAnalysis, coda: _Coda, most: int) -> Ending | None:
+def _ended(sim: DynamicSimulation, analysis: ShakingRequest, coda: _Coda, most: int) -> Ending | None:
     """How it ends, where that is known by now, or nobody looks any longer: after so many steps."""
     history, swings, followed = sim.settings.history, coda.swings, sim.time - coda.since
     block = fallen(sim, analysis)

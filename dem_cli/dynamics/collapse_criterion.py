@@ -15,8 +15,8 @@ from dem_cli.geometry.rotation import leans_of
 if TYPE_CHECKING:
     from dem_cli.dynamics.time_step import TimeStep
     from dem_cli.engine.dynamic import DynamicSimulation
-    from dem_cli.output.record import Energy
-    from dem_cli.tables.analysis import ShakingAnalysis
+    from dem_cli.records.history_rows import Energy
+    from dem_cli.records.requests import ShakingRequest
 
 
 class CollapsedBlock(NamedTuple):
@@ -27,7 +27,7 @@ class CollapsedBlock(NamedTuple):
     how: str
 
 
-def fallen(sim: DynamicSimulation, analysis: ShakingAnalysis) -> CollapsedBlock | None:
+def fallen(sim: DynamicSimulation, analysis: ShakingRequest) -> CollapsedBlock | None:
     """The block that turned or sank farthest beyond the limits of the case or lost its support, where there is one."""
     for values, limits, word, unit in _measured(sim, analysis):
         over = values - limits
@@ -37,13 +37,13 @@ def fallen(sim: DynamicSimulation, analysis: ShakingAnalysis) -> CollapsedBlock 
     return None
 
 
-def fallen_blocks(sim: DynamicSimulation, analysis: ShakingAnalysis) -> np.ndarray:
+def fallen_blocks(sim: DynamicSimulation, analysis: ShakingRequest) -> np.ndarray:
     """Numbers of all blocks that turned or sank beyond the limits of the case or lost their support, ascending."""
     over = [values > limits for values, limits, _, _ in _measured(sim, analysis)]
     return sim.free[np.any(over, axis=0)]
 
 
-def _measured(sim: DynamicSimulation, analysis: ShakingAnalysis) -> list[tuple[np.ndarray, np.ndarray, str, str]]:
+def _measured(sim: DynamicSimulation, analysis: ShakingRequest) -> list[tuple[np.ndarray, np.ndarray, str, str]]:
     """What tells a fall, of the free blocks: values, limits, a word and a unit."""
     free, d = sim.free, sim.model.dimension
     leans = np.degrees(leans_of(sim.bodies.orientations[free]))

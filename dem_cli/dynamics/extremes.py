@@ -12,10 +12,10 @@ from dem_cli.kernels import records as slot
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from dem_cli.case.schema import Monitor
     from dem_cli.dynamics.ground import GroundMotion
     from dem_cli.engine.dynamic import DynamicSimulation, Looker
     from dem_cli.engine.monitors import Monitors
+    from dem_cli.records.requests import MonitorRequest
 
 
 class MotionStretch(NamedTuple):
@@ -29,7 +29,7 @@ class MotionStretch(NamedTuple):
     impacts: int  # steps in which contact points met, where joints have dashpots and a block has moved visibly
 
 
-def without_meaning(monitors: Sequence[Monitor], impacts: int) -> list[int]:
+def without_meaning(monitors: Sequence[MonitorRequest], impacts: int) -> list[int]:
     """Numbers of monitors whose peaks mean nothing: accelerations where blocks hit each other.
 
     An impact of stiff joints lasts as long as these are soft, and its acceleration is what that makes it.
@@ -86,7 +86,7 @@ def shaken_on(
     else:
         times, base = dt * (first + every * np.arange(n)), np.zeros((n, 3, sim.model.dimension))
     sim.shake(ground.stretch(start, since + n_steps, dt), n_steps, watch, since, looker)
-    values = np.zeros((0, len(monitors.tables)))
+    values = np.zeros((0, len(monitors.requests)))
     if n_samples > new:
         values = monitors.series(watch.samples[new:], base, watch.links[new:])
     overlap = max(0.0, -float(gauges.tally[slot.LEAST_GAP]))

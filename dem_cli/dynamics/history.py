@@ -34,14 +34,15 @@ from dem_cli.engine.viscous import Damping
 from dem_cli.errors import CaseError, CaseProblem, SolverError
 from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of, smallest_edge
-from dem_cli.output.record import COLLAPSED, FALLS, MOVES, STOOD, Energy, Samples
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.history_rows import Energy, Samples
+from dem_cli.records.ports import stage
+from dem_cli.records.statuses import COLLAPSED, FALLS, MOVES, STOOD
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.mechanism import named
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
     from dem_cli.engine.track import Track
+    from dem_cli.records.requests import SolverRequest
 
 WAYS = {"damping": "local", "mass_damping": "mass"}  # other words for some of them
 CUT = 1e-6  # of a motion, that may be left over where a duration is that of the motion
@@ -60,26 +61,26 @@ class _Shaking:
 class TimeHistory:
     """One run: a structure under one motion of the ground."""
 
-    LASTING = frozenset(("job", "ground", "case", "damping", "sim", "step", "track", "snapshots", "braked"))
+    LASTING = frozenset(("job", "ground", "request", "damping", "sim", "step", "track", "snapshots", "braked"))
 
     def __init__(self, job: Job, ground: GroundMotion):
-        self.job, self.ground, self.case = job, ground, job.case
-        self.duration = duration_of(job.case, ground)
-        self.damping = damping_of_start(job.case, job.model, job.settings)
+        self.job, self.ground, self.request = job, ground, job.request
+        self.duration = duration_of(job.request, ground)
+        self.damping = damping_of_start(job.request, job.model, job.settings)
         self.sim, self.step = self._simulation()
         self.track: Track = job.track(self.sim)
-        self.snapshots = Snapshots(self.track, self.sim, ground, job.case.gravity, job.case.output.frames)
-        self.extremes = Extremes(len(job.case.monitor))  # before a collapse is seen
+        self.snapshots = Snapshots(self.track, self.sim, ground, job.request.gravity, job.request.frames)
+        self.extremes = Extremes(len(job.request.monitors))  # before a collapse is seen
         self.closed: float | None = None  # error of the energy book when a collapse was seen
         self.farthest = 0.0  # that a block went against the ground [m], look by look
         self.braked = BrakedMotion(self.sim)
 
     def _simulation(self) -> tuple[DynamicSimulation, TimeStep]:
         """The simulation, with laws that know the time step."""
-        analysis, model = self.case.analysis, self.job.model
+        analysis, model = self.request.shaking, self.job.model
 
         def make(step: float) -> DynamicSimulation:
-            return shaken(self.case, model, self.damping, step, self.job.settings)
+            return shaken(self.request, model, self.damping, step, self.job.settings)
 
         sim = self.job.clock.compiled(lambda: make(math.inf))
         found = time_step(sim, analysis.margin, analysis.time_step, self.damping.stiffening)
@@ -88,7 +89,7 @@ class TimeHistory:
             found = found._replace(step=min(found.step, history.loose_step, history.loose_share * self.duration))
         found, drifts = refined(found, sim, self.ground.motions, self.duration, analysis)
         self.job.warnings += [drifts] if drifts else []
-        if any(law.rates for law in laws_of(self.case)):
+        if any(law.rates for law in laws_of(self.request)):
             sim = self.job.clock.compiled(lambda: make(found.step))
         return sim, found
 
@@ -110,8 +111,8 @@ class TimeHistory:
 
     def start(self) -> bool:
         """Rest under dead loads, then the first motion; False where there is no rest."""
-        sim, case = self.sim, self.case
-        if case.analysis.settle:
+        sim, request = self.sim, self.request
+        if request.shaking.settle:
             self.track.observer.progress("gravity", 0.0, 0.0, None)
             if self._stands() != "equilibrium":
                 self.track.write("gravity")
@@ -119,9 +120,9 @@ class TimeHistory:
                 return False
         sim.begin(self.step.step)
         sim.take_carriers(carriers_of(sim))
-        if case.initial:
-            set_initial(case, sim)
-        if case.initial or not case.analysis.settle:
+        if request.initial:
+            set_initial(request.initial, sim)
+        if request.initial or not request.shaking.settle:
             sim.start_moving()
         self.track.write("shaking")
         self.track.frame("shaking")
@@ -129,7 +130,7 @@ class TimeHistory:
 
     def _stands(self) -> str:
         """State under dead loads. Raises SolverError where neither equilibrium nor a fall is found."""
-        steps = min(self.case.analysis.max_steps, self.job.settings.history.settling)
+        steps = min(self.request.shaking.max_steps, self.job.settings.history.settling)
         try:
             return stand(self.sim, Budget(steps)).state
         except SolverError as error:
@@ -141,10 +142,10 @@ class TimeHistory:
     def _shake(self) -> dict[str, Any]:
         """The motion until its end, or until a collapse was followed long enough, then how it ends."""
         total = max(1, math.ceil(self.duration / self.step.step))
-        if total > self.case.analysis.max_steps:
+        if total > self.request.shaking.max_steps:
             raise SolverError(
                 f"{self.duration:g} s are {total:,} steps of {self.step.step:.3g} s, more than analysis.max_steps "
-                f"({self.case.analysis.max_steps:,}): {self.step.cause}"
+                f"({self.request.shaking.max_steps:,}): {self.step.cause}"
             )
         return {"status": "ok"} | self._ended(self._through_motion(total))
 
@@ -182,10 +183,10 @@ class TimeHistory:
     def _look_for_falls(self, motion: _Shaking, seen: MotionStretch) -> None:
         """Peaks of the monitors, with those of the last stretch, and whether a block has fallen since."""
         self.extremes.see(seen)
-        motion.fallen = fallen_block(self.sim, self.case.analysis)
+        motion.fallen = fallen_block(self.sim, self.request.shaking)
         if motion.fallen is not None:
             self.closed = closure(self.sim)
-            motion.end = min(motion.end, motion.fallen.time + self.case.analysis.after_collapse)
+            motion.end = min(motion.end, motion.fallen.time + self.request.shaking.after_collapse)
             self.snapshots.collapsed(motion.end)
 
     def _ended(self, fallen: CollapsedBlock | None) -> dict[str, Any]:
@@ -195,13 +196,13 @@ class TimeHistory:
         found: dict[str, Any] = {"collapsed": end.collapsed, "collapse_time": None}
         if end.block is not None:
             found |= {"collapse_time": end.block.time, "collapse_block": end.block.block, "collapse": end.block.how}
-            found["fallen_blocks"] = named(sim, fallen_blocks(sim, self.case.analysis))
+            found["fallen_blocks"] = named(sim, fallen_blocks(sim, self.request.shaking))
         return found | {"ending": end.how, "at_rest": end.still, "followed": end.followed}
 
     def _followed(self, sim: DynamicSimulation) -> Ending:
         """How a copy ends after the motion: books and frames are of the motion alone, peaks and samples of all."""
-        analysis, dt, motion_ends = self.case.analysis, self.step.step, sim.time
-        history, longest = sim.settings.history, longest_coda(self.case, sim.model)
+        analysis, dt, motion_ends = self.request.shaking, self.step.step, sim.time
+        history, longest = sim.settings.history, longest_coda(self.request, sim.model)
         every, waiting = self._every(), list[MotionStretch]()  # what shows a structure at rest is not worth keeping
 
         def tell() -> None:
@@ -230,7 +231,7 @@ class TimeHistory:
 
     def _every(self) -> int:
         """Steps from one sample to the next."""
-        return max(1, round(1.0 / (self.case.output.rate * self.step.step)))
+        return max(1, round(1.0 / (self.request.rate * self.step.step)))
 
     def _stretch(self, n_steps: int, every: int) -> MotionStretch:
         """n_steps of motion, sampled every so many steps since the start of the run."""
@@ -240,7 +241,7 @@ class TimeHistory:
         )
         check_finite(sim)
         self._tell(seen, coda=False)
-        sim.show_base(self.ground.along(sim.time), self.case.gravity)
+        sim.show_base(self.ground.along(sim.time), self.request.gravity)
         return seen
 
     def _tell(self, seen: MotionStretch, coda: bool) -> None:
@@ -270,10 +271,10 @@ class TimeHistory:
             self.job.contradictions.append(f"its motion of {whole} s was cut at {cut} s")
         braked = 0.0 if fell else self.braked.share(sim, measures.energy(sim))
         if braked > self.job.settings.doubts.governs:
-            self.job.warnings.append(braked_words(self.case, braked))
+            self.job.warnings.append(braked_words(self.request.damping, braked))
             self.job.contradictions.append(f"mass damping took {100.0 * braked:.0f} % of the energy")
         impacts = self.extremes.impacts
-        if without_meaning(self.case.monitor, impacts):
+        if without_meaning(self.request.monitors, impacts):
             self.job.warnings.append(
                 "no peak accelerations are given: blocks hit each other, and how hard is up to the stiffness of the "
                 "joints; history.csv has the samples"
@@ -303,20 +304,20 @@ class TimeHistory:
             )
 
 
-def damping_of_start(case: Case, model: Model, settings: Settings = DEFAULT) -> Damping:
-    """The [damping] of a case for the joints that it starts with. Raises CaseError as `damping_of` does."""
-    properties = joint_properties(case, model, settings.stiffness.dynamics)
+def damping_of_start(request: SolverRequest, model: Model, settings: Settings = DEFAULT) -> Damping:
+    """Damping as it is asked for, for the joints that it starts with. Raises CaseError as `damping_of` does."""
+    properties = joint_properties(request, model, settings.stiffness.dynamics)
     rest = bodies_at_rest(model, origin_of(model))
     start = joints_of_start(model, rest, properties, smallest_edge(model))
-    return damping_of(case, model, start, settings)
+    return damping_of(request, model, start, settings)
 
 
 def shaken(
-    case: Case, model: Model, damping: Damping, step: float = math.inf, settings: Settings = DEFAULT
+    request: SolverRequest, model: Model, damping: Damping, step: float = math.inf, settings: Settings = DEFAULT
 ) -> DynamicSimulation:
     """A structure before its first step, with laws that know the time step [s]; nothing is compiled for it."""
-    properties = joint_properties(case, model, settings.stiffness.dynamics, step)
-    return DynamicSimulation(model, law_of(case), properties, damping, settings)
+    properties = joint_properties(request, model, settings.stiffness.dynamics, step)
+    return DynamicSimulation(model, law_of(request), properties, damping, settings)
 
 
 def energy_shares(energy: Energy) -> dict[str, float]:
@@ -326,9 +327,9 @@ def energy_shares(energy: Energy) -> dict[str, float]:
     return {name: value / total for name, value in taken.items() if value != 0.0} if total > 0.0 else {}
 
 
-def duration_of(case: Case, ground: GroundMotion) -> float:
-    """How long to look [s]. Raises CaseError where neither the case nor a motion says it."""
-    duration = case.analysis.duration or ground.duration
+def duration_of(request: SolverRequest, ground: GroundMotion) -> float:
+    """How long to look [s]. Raises CaseError where neither the request nor a motion says it."""
+    duration = request.shaking.duration or ground.duration
     if duration <= 0.0:
         message = "missing; must be a number > 0 ([s]) where no [motion] says how long the ground moves"
         raise CaseError([CaseProblem(("analysis", "duration"), message)])

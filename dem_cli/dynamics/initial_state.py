@@ -1,4 +1,4 @@
-"""[[initial]]: blocks that start tilted, displaced or moving."""
+"""Initial state of a time history: blocks that start tilted, displaced or moving."""
 
 from __future__ import annotations
 
@@ -14,28 +14,29 @@ from dem_cli.errors import CaseError, CaseProblem
 from dem_cli.geometry.rotation import swept
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
+    from collections.abc import Sequence
+
     from dem_cli.engine.simulation import Simulation
     from dem_cli.model.model import Model
-    from dem_cli.tables.initial_state import InitialState
+    from dem_cli.records.requests import InitialRequest
 
 
-def set_initial(case: Case, sim: Simulation) -> None:
-    """Moves the blocks of all [[initial]] tables, one after the other."""
+def set_initial(initial: Sequence[InitialRequest], sim: Simulation) -> None:
+    """Moves the blocks of all requests, one after the other."""
     rest = measures.largest_overlap(sim)
-    for table in case.initial:
-        chosen = _chosen(sim.model, table)
-        if table.tilt:
-            moves.turn(sim, chosen, np.array(table.turn), _pivot(sim, chosen, np.array(table.turn)))
-        moves.displace(sim, chosen, np.array(table.displacement))
-        moves.throw(sim, chosen, np.array(table.velocity))
+    for one in initial:
+        chosen = _chosen(sim.model, one)
+        if any(one.turn):
+            moves.turn(sim, chosen, np.array(one.turn), _pivot(sim, chosen, np.array(one.turn)))
+        moves.displace(sim, chosen, np.array(one.displacement))
+        moves.throw(sim, chosen, np.array(one.velocity))
         moves.find_faces(sim)
-    _check_apart(case, sim, rest)
+    _check_apart(initial, sim, rest)
 
 
-def _chosen(model: Model, table: InitialState) -> np.ndarray:
-    """Numbers of the blocks that a table moves, each once."""
-    found = np.concatenate([model.chosen(name, False) for name in table.names])
+def _chosen(model: Model, one: InitialRequest) -> np.ndarray:
+    """Numbers of the blocks that a request moves, each once."""
+    found = np.concatenate([model.chosen(name, False) for name in one.names])
     return found[np.sort(np.unique(found, return_index=True)[1])]
 
 
@@ -49,13 +50,13 @@ def tilt(sim: Simulation, chosen: np.ndarray, turn: np.ndarray | float) -> None:
     moves.find_faces(sim)
 
 
-def _check_apart(case: Case, sim: Simulation, rest: float) -> None:
+def _check_apart(initial: Sequence[InitialRequest], sim: Simulation, rest: float) -> None:
     """Raises CaseError where a block that was moved is inside another, deeper than joints gave before [m]."""
     model = sim.model
     faces = sim.tracking.faces_within(sim.bodies, 0.0)
     for number in np.flatnonzero(faces.separation < -2.0 * rest - sim.settings.history.inside * sim.smallest):
         pair = model.part_blocks[faces.parts[number]].tolist()
-        tables = [i for i, t in enumerate(case.initial) if set(_chosen(model, t).tolist()) & set(pair)]
+        tables = [i for i, t in enumerate(initial) if set(_chosen(model, t).tolist()) & set(pair)]
         if not tables:
             continue
         a, b = (model.block_ids[i] for i in pair)

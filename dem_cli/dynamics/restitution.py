@@ -24,8 +24,7 @@ from dem_cli.model.model import Model
 from dem_cli.model.scales import origin_of
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
-    from dem_cli.tables.damping import DampingTable
+    from dem_cli.records.requests import DampingRequest, SolverRequest
 
 
 class RockingBlock(NamedTuple):
@@ -48,21 +47,21 @@ class Rocking(NamedTuple):
     axis: np.ndarray  # of the turn by which it stands on the first of these, unit, (r,)
 
 
-def reference_block(model: Model, start: JointArrays, table: DampingTable) -> RockingBlock:
-    """The block that [damping] names, else the heaviest free one with a foot on a support.
+def reference_block(model: Model, start: JointArrays, asked: DampingRequest) -> RockingBlock:
+    """The block whose restitution is meant, by its name, else the heaviest free one with a foot on a support.
 
     start: joints of the undeformed structure. Raises CaseError where there is none: a block on a corner or an edge
     turns about that alone, and does not rock.
     """
     joints = start.joints
-    if table.block is not None:
-        chosen = int(model.chosen(table.block)[0])
+    if asked.block is not None:
+        chosen = int(model.chosen(asked.block)[0])
         found = _on_its_joint(model, start, chosen)
         if found is None:
-            raise CaseError([CaseProblem(("damping", "block"), f"block '{table.block}' rests on nothing")])
+            raise CaseError([CaseProblem(("damping", "block"), f"block '{asked.block}' rests on nothing")])
         if not _is_broad(found.foot):
             what = (
-                f"block '{table.block}' rests on a corner, an edge or an upright face: it does not rock; name another"
+                f"block '{asked.block}' rests on a corner, an edge or an upright face: it does not rock; name another"
             )
             raise CaseError([CaseProblem(("damping", "block"), what)])
         return found
@@ -144,18 +143,18 @@ def housner(model: Model, reference: RockingBlock) -> float:
 
 
 def fraction_of(
-    case: Case, model: Model, start: JointArrays, table: DampingTable, settings: Settings = DEFAULT
+    request: SolverRequest, model: Model, start: JointArrays, settings: Settings = DEFAULT
 ) -> tuple[float, str]:
     """Fraction of critical that gives the wanted restitution, and words about it. Raises CaseError out of reach."""
     restitution = settings.restitution
-    reference = reference_block(model, start, table)
+    reference = reference_block(model, start, request.damping)
     rigid, name = housner(model, reference), model.block_ids[reference.block]
-    wanted = table.restitution
+    wanted = request.damping.restitution
     assert wanted is not None  # as damping_of asks
     if isinstance(wanted, str):
         return restitution.housner_fraction, f"restitution of Housner, {rigid:.4g} for block '{name}'"
-    lowest = rocked(case, model, reference, restitution.most, settings)
-    highest = rocked(case, model, reference, restitution.least, settings)
+    lowest = rocked(request, model, reference, restitution.most, settings)
+    highest = rocked(request, model, reference, restitution.least, settings)
     if not lowest < wanted < highest:
         message = (
             f"{wanted:g} is not allowed for block '{name}': dashpots that do not pull give {lowest:.4f} to "
@@ -166,14 +165,16 @@ def fraction_of(
     from scipy.optimize import brentq  # 0.2 s
 
     def error(logarithm: float) -> float:
-        return rocked(case, model, reference, float(functions.exp(logarithm)), settings) - wanted
+        return rocked(request, model, reference, float(functions.exp(logarithm)), settings) - wanted
 
     least, most = functions.log(restitution.least), functions.log(restitution.most)
     found = float(functions.exp(brentq(error, least, most, xtol=restitution.accurate, rtol=1e-6)))
     return found, f"restitution {wanted:g} of block '{name}', {found:.3g} of critical"
 
 
-def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float, settings: Settings = DEFAULT) -> float:
+def rocked(
+    request: SolverRequest, model: Model, reference: RockingBlock, fraction: float, settings: Settings = DEFAULT
+) -> float:
     """Ratio of angular velocities when the block lands, from the heights before and after it."""
     from dem_cli.dynamics.ground import GroundMotion
     from dem_cli.dynamics.initial_state import tilt
@@ -186,11 +187,11 @@ def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float, s
 
     restitution = settings.restitution
     pair = model.only([reference.support, reference.block], fixed=np.array([True, False]))
-    properties = joint_properties(case, model, settings.stiffness.dynamics)
-    sim = DynamicSimulation(pair, law_of(case), properties, Damping(fraction=fraction), settings)
+    properties = joint_properties(request, model, settings.stiffness.dynamics)
+    sim = DynamicSimulation(pair, law_of(request), properties, Damping(fraction=fraction), settings)
     stand(sim, Budget(restitution.most_steps))
     rest = float(sim.bodies.positions[1, pair.dimension - 1])
-    dt = time_step(sim, case.analysis.margin).step
+    dt = time_step(sim, request.shaking.margin).step
     sim.begin(dt)
     ends, axis = reference.rocks()
     slender = functions.arctan2(np.linalg.norm(ends[:, :-1], axis=1).min(), np.abs(ends[:, -1]).max())
@@ -200,7 +201,7 @@ def rocked(case: Case, model: Model, reference: RockingBlock, fraction: float, s
     start = float(sim.bodies.positions[1, pair.dimension - 1]) - rest
     ground = GroundMotion([], pair)
     radius = float(np.sqrt((ends**2).sum(axis=1)).max())
-    longest = restitution.longest * np.sqrt(radius / max(case.gravity, 1e-9))
+    longest = restitution.longest * np.sqrt(radius / max(request.gravity, 1e-9))
     n, highest = max(1, int(restitution.look * longest / dt)), 0.0
     watch = Watch(np.array([1]), 1, np.zeros((n, 1, 3, sim.bodies.velocities.shape[1])))
     while sim.time < longest:

@@ -31,7 +31,7 @@ from dem_cli.model.model import Model
 from dem_cli.model.scales import mean_weight, origin_of, own_weights, smallest_edge
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
+    from dem_cli.records.requests import SolverRequest
 
 
 class RockingStiffness(NamedTuple):
@@ -59,21 +59,21 @@ class RockingStiffness(NamedTuple):
         )
 
 
-def rocking_stiffness(case: Case, model: Model, settings: Settings = DEFAULT) -> RockingStiffness:
+def rocking_stiffness(request: SolverRequest, model: Model, settings: Settings = DEFAULT) -> RockingStiffness:
     """The softest joints on which blocks turn by no more than wanted; softer where these would take too many steps,
     but never softer than settings.stiffness.dynamics.
     """
     softest, rocking = settings.stiffness.dynamics, settings.rocking
-    automatic = bool(joint_properties(case, model, softest).rigid.any())
+    automatic = bool(joint_properties(request, model, softest).rigid.any())
     if not automatic or model.fixed.all():
         return RockingStiffness(softest, 0.0, 0.0, automatic)
-    joints, mine = _joints(case, model, softest)
+    joints, mine = _joints(request, model, softest)
     if not len(joints.kn):
         return RockingStiffness(softest, 0.0, 0.0, True)
     turn = turn_sideways(model, rigid_but(joints, mine), settings)
-    work, step = _work(case, model, joints, settings)
-    most = rocking.work / _rocking_time(case, model)
-    shortest = case.analysis.time_step or 0.0
+    work, step = _work(request, model, joints, settings)
+    most = rocking.work / _rocking_time(request, model)
+    shortest = request.shaking.time_step or 0.0
     asked = (step / shortest) ** 2 if shortest else math.inf
     seen = rocking.round_off / _round_off(model, joints)
     affordable = min((most / work) ** 2, asked, seen) if work else 1.0
@@ -117,9 +117,9 @@ def _solved(found: System, forces: np.ndarray) -> np.ndarray:
     return solved_symmetric(matrix + shift * eye_array(len(forces)), forces)
 
 
-def _joints(case: Case, model: Model, ratio: float) -> tuple[Joints, np.ndarray]:
+def _joints(request: SolverRequest, model: Model, ratio: float) -> tuple[Joints, np.ndarray]:
     """Joints of the start, and which of their points are of "auto" stiffness."""
-    properties = joint_properties(case, model, ratio)
+    properties = joint_properties(request, model, ratio)
     rest = bodies_at_rest(model, origin_of(model))
     joints = joints_of_start(model, rest, properties, smallest_edge(model)).joints
     joints = joints._replace(integrated=NOTHING)  # those are not "auto", and count as next to rigid
@@ -146,21 +146,20 @@ def _round_off(model: Model, joints: Joints) -> float:
     return float(np.finfo(float).eps * farthest * (joints.kn / lightest).max())
 
 
-def _rocking_time(case: Case, model: Model) -> float:
+def _rocking_time(request: SolverRequest, model: Model) -> float:
     """√(height/g) of all that can move [s]; one second without gravity."""
     free = ~model.fixed[model.vertex_blocks]
     height = float(np.ptp((model.vertices + model.centroids[model.vertex_blocks])[free, -1]))
-    return math.sqrt(height / case.gravity) if case.gravity > 0.0 else 1.0
+    return math.sqrt(height / request.gravity) if request.gravity > 0.0 else 1.0
 
 
-def _work(case: Case, model: Model, joints: Joints, settings: Settings) -> tuple[float, float]:
+def _work(request: SolverRequest, model: Model, joints: Joints, settings: Settings) -> tuple[float, float]:
     """Steps per second of motion times what each costs in contact points, and the step [s], by the joints of the
     start.
     """
     highest = agreed(highest_of(springs_of(model, joints, settings=settings.frequency)))
     if highest == 0.0:
         return 0.0, math.inf
-    table = case.damping
-    elements = element_numbers(table.maxwell or ()) if table is not None else element_numbers(())
-    step = case.analysis.margin * 2.0 / (highest * math.sqrt(1.0 + float(elements[:, 0].sum())))
+    elements = element_numbers(request.damping.maxwell)
+    step = request.shaking.margin * 2.0 / (highest * math.sqrt(1.0 + float(elements[:, 0].sum())))
     return (len(joints.kn) + settings.rocking.points_per_step) / step, step

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.engine.dynamic_settings import SnapshotSettings
     from dem_cli.engine.track import Track
-    from dem_cli.output.record import Frame
+    from dem_cli.records.frames import Frame
 
 
 class EvenTimes:

@@ -16,8 +16,8 @@ from dem_cli.dynamics.frequencies import System, system, with_springs
 from dem_cli.engine.placement import moves
 from dem_cli.geometry.rotation import turned_further
 from dem_cli.kernels import records as slot
-from dem_cli.output.record import BUCKLED, FALLS
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import stage
+from dem_cli.records.statuses import BUCKLED, FALLS
 from dem_cli.statics.equilibrium import settle
 
 if TYPE_CHECKING:

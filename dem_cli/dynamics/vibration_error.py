@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from dem_cli.dynamics.time_step import TimeStep
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.motion.motion import Motion
-    from dem_cli.tables.analysis import ShakingAnalysis
+    from dem_cli.records.requests import ShakingRequest
 
 AIM = 0.8  # of the allowed error, that a step is chosen for
 MOST_SAMPLES = 20_000  # of a motion
@@ -54,7 +54,7 @@ class Swing(NamedTuple):
 
 
 def refined(
-    found: TimeStep, sim: DynamicSimulation, motions: Sequence[Motion], duration: float, analysis: ShakingAnalysis
+    found: TimeStep, sim: DynamicSimulation, motions: Sequence[Motion], duration: float, analysis: ShakingRequest
 ) -> tuple[TimeStep, str]:
     """The step at which elastic vibrations are right, and words for what is still wrong, or nothing.
 
@@ -68,13 +68,12 @@ def refined(
     if error.share <= settings.drift:
         return found, ""
     wanted = functions.agreed(math.sqrt(AIM * settings.drift / error.share))
-    chosen = analysis.time_step is None and analysis.margin == type(analysis).model_fields["margin"].default
-    if chosen:
+    if analysis.free_step:
         found = found._replace(step=max(wanted, settings.shortest) * found.step)
         error = error if wanted >= settings.shortest else vibration_error(sim, motions, found.step, duration)
         if wanted >= settings.shortest or error.share <= settings.drift:
             return found, ""
-    needed = wanted if not chosen else wanted / settings.shortest
+    needed = wanted if not analysis.free_step else wanted / settings.shortest
     margin = min(needed * found.step / found.limit, 0.95)
     return found, (
         f"elastic vibration at {error.frequency:.3g} Hz drifts: its history is off by up to {100.0 * error.share:.2g} "

@@ -14,40 +14,40 @@ from dem_cli.engine.measures import closure, free_falls, reweighting_shares
 from dem_cli.model.scales import WEIGHTLESS, own_weights
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
     from dem_cli.contact.block_compliance import BlockCompliance
     from dem_cli.engine.simulation import Simulation
+    from dem_cli.records.requests import SolverRequest
 
 
-def warnings(case: Case, sims: list[Simulation], found: dict[str, Any]) -> list[str]:
+def warnings(request: SolverRequest, sims: list[Simulation], found: dict[str, Any]) -> list[str]:
     """Doubts about the answer `found`, the worst first; where there is none, how to get one."""
     said, doubts = [], sims[0].settings.doubts
     worst = max((closure(sim) for sim in sims), key=abs)
     overlap = max(measures.largest_overlap(sim) / sim.smallest for sim in sims)
     overlap = max(overlap, (found.get("largest_overlap") or 0.0) / sims[0].smallest)  # of all of a motion
     if abs(worst) > doubts.closure:
-        advice = "lower analysis.margin" if hasattr(case.analysis, "margin") else "do not trust this run"
+        advice = "lower analysis.margin" if request.in_seconds else "do not trust this run"
         said.append(f"the energy does not close: {worst:.2%} is missing; {advice}")
     if overlap > doubts.overlap:
-        crushes = any(getattr(joint, "compression", None) is not None for joint in case.joints.values())
+        crushes = any(getattr(joint, "compression", None) is not None for joint in request.joints.named.values())
         why = "stone that is crushed, beside what joints give" if crushes else "the joints are too soft"
         said.append(f"blocks overlap by {overlap:.1%} of the smallest edge: {why}")
-    said += _reweighted(case, sims)
+    said += _reweighted(request, sims)
     said += (
-        _leaning_automatically(case, sims[0])
+        _leaning_automatically(request, sims[0])
         + weightless(sims[0])
         + _shear(sims[0])
         + _lumped(sims[0])
-        + unbending(case, sims[0])
-        + _cracking(case, sims[0])
-        + _leaning(case, sims[0], found.get("displacement_at_failure"))
+        + unbending(request, sims[0])
+        + _cracking(request, sims[0])
+        + _leaning(request, sims[0], found.get("displacement_at_failure"))
     )
     if found.get("status") == "not converged":
-        said.append(_advice(case, sims[0], found))
+        said.append(_advice(request, sims[0], found))
     return said
 
 
-def _reweighted(case: Case, sims: list[Simulation]) -> list[str]:
+def _reweighted(request: SolverRequest, sims: list[Simulation]) -> list[str]:
     """Energy that came or went as blocks that slide over each other changed the areas of contact points."""
     net, total = max((reweighting_shares(sim) for sim in sims), key=max_of)
     allowed = sims[0].settings.doubts.reweighted
@@ -55,7 +55,7 @@ def _reweighted(case: Case, sims: list[Simulation]) -> list[str]:
         return []
     way = "made" if net < 0.0 else "took"
     of = "largest kinetic energy" if sims[0].most_kinetic > 0.0 else "energy that moved"
-    advice = "lower analysis.margin, or stiffen joints" if hasattr(case.analysis, "margin") else "stiffen joints"
+    advice = "lower analysis.margin, or stiffen joints" if request.in_seconds else "stiffen joints"
     return [
         f"the areas of contact points {way} {abs(net):.1%} of the {of} as they changed, all amounts together "
         f"{total:.1%}: {advice}"
@@ -79,10 +79,10 @@ def weightless(sim: Simulation) -> list[str]:
     return [f"the weight of block '{name}'{more} is below {WEIGHTLESS:g} of the mean: its equilibrium is not proven"]
 
 
-def unproven(case: Case, sim: Simulation) -> bool:
+def unproven(request: SolverRequest, sim: Simulation) -> bool:
     """Whether some block of a static analysis weighs too little beside others for anything to be proven of it."""
     weighs = bool(sim.loads.dead[sim.free, : sim.model.dimension].any())
-    return weighs and not hasattr(case.analysis, "margin") and bool(weightless(sim))
+    return weighs and not request.in_seconds and bool(weightless(sim))
 
 
 def _shear(sim: Simulation) -> list[str]:
@@ -107,12 +107,10 @@ def _lumped(sim: Simulation) -> list[str]:
     ]
 
 
-def unbending(case: Case, sim: Simulation) -> list[str]:
+def unbending(request: SolverRequest, sim: Simulation) -> list[str]:
     """Joints that are stiff beside blocks of uniform strain, which do not bend."""
-    materials = [case.materials[name] for name in sim.model.material_names]
-    moduli = [material.young if material.strains and not material.bends else np.inf for material in materials]
     free = np.repeat(sim.properties.rigid[:, None], 2, axis=1)
-    compliance = block_compliance(sim.model, np.repeat(np.array(moduli, float)[:, None], 2, axis=1), free)
+    compliance = block_compliance(sim.model, np.repeat(request.joints.uniform[:, None], 2, axis=1), free)
     return [
         f"blocks of uniform strain deform {times}: they do not bend, and give way too little: walls by "
         "some 2 % at 0.1 times, 4 % at 0.4, 9 % at 3; what bends and is few blocks wide by 8, 27 and 70 %"
@@ -150,7 +148,7 @@ WORTH = {
 NINE = _Worth(1.35, (0.87, 1.15))  # in space, points = 3
 
 
-def _cracking(case: Case, sim: Simulation) -> list[str]:
+def _cracking(request: SolverRequest, sim: Simulation) -> list[str]:
     """Joints that crack or are crushed at so few points that they are stronger or weaker in bending than a section."""
     space, found = sim.contacts.shear.shape[1] == 2, []
     for name, layout in zip(sim.properties.names, sim.properties.plane, strict=True):
@@ -161,7 +159,7 @@ def _cracking(case: Case, sim: Simulation) -> list[str]:
             if space and layout.points == 3 and not layout.centred
             else WORTH[3 if layout.centred else layout.points]
         )
-        joint, how = case.joints[name], []
+        joint, how = request.joints.named[name], []
         if getattr(joint, "tension", 0.0) > 0.0:
             how.append(f"where it cracks up to {worth.cracked:g} times")
         if getattr(joint, "compression", None) is not None:
@@ -174,11 +172,11 @@ def _cracking(case: Case, sim: Simulation) -> list[str]:
     return found
 
 
-def _leaning_automatically(case: Case, sim: Simulation) -> list[str]:
+def _leaning_automatically(request: SolverRequest, sim: Simulation) -> list[str]:
     """Where even "auto" joints as stiff as round-off allows let a structure lean by what counts."""
     if sim.kinematics == "fixed":
         return []
-    resolution = getattr(case.analysis, "resolution", None)
+    resolution = request.analysis.resolution
     allowed = sim.settings.doubts.buckles if sim.takes_back else resolution
     if allowed is None or sim.leans <= allowed:
         return []
@@ -188,13 +186,13 @@ def _leaning_automatically(case: Case, sim: Simulation) -> list[str]:
     ]
 
 
-def _leaning(case: Case, sim: Simulation, moved: float | None) -> list[str]:
+def _leaning(request: SolverRequest, sim: Simulation, moved: float | None) -> list[str]:
     """Warning of a load on soft joints, where geometry moves because the case says so and stiff ones were not tried.
 
     A block that rocks on a face without tension carries b/h (1 − 2c/3b − hθ/b), which is largest where c = 3hθ: its
     centre has then moved by u = hθ/2, and 6 u/b of the load is lost. Points at the ends of a joint lose u/b alone.
     """
-    if case.analysis.kinematics != "large" or not sim.properties.given or moved is None:
+    if request.analysis.kinematics != "large" or not sim.properties.given or moved is None:
         return []
     share = moved / float(np.median(sim.widths[sim.free]))
     doubts = sim.settings.doubts
@@ -222,14 +220,14 @@ def _known(found: dict[str, Any]) -> str:
     return "the failure load was not found: " + ", ".join(parts)
 
 
-def _advice(case: Case, sim: Simulation, found: dict[str, Any]) -> str:
+def _advice(request: SolverRequest, sim: Simulation, found: dict[str, Any]) -> str:
     """What is known and what may be done where a search ended without an answer."""
     known = _known(found)
     weightless = not sim.loads.dead[sim.free].any()
     ways = ["give the blocks weight, or dead loads: nothing presses them together"] if weightless else []
-    ways.append(f"raise analysis.max_steps ({case.analysis.max_steps:,})")
-    if getattr(case.analysis, "resolution", None) is not None:
-        ways.append(f"accept a wider bracket (analysis.resolution {case.analysis.resolution:g})")
+    ways.append(f"raise analysis.max_steps ({request.analysis.max_steps:,})")
+    if request.analysis.resolution is not None:
+        ways.append(f"accept a wider bracket (analysis.resolution {request.analysis.resolution:g})")
     fall, ids = free_falls(sim)[sim.free], sim.model.block_ids
     fastest = fall.max(initial=0.0)
     slow = np.flatnonzero((fall > 0.0) & (fall * sim.settings.doubts.uneven < fastest))

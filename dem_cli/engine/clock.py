@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, TypeVar
 
 from dem_cli.interrupts import at_once
 from dem_cli.kernels.compilation.compile_time import Compilation
-from dem_cli.output.record import Frame, HistoryRow, Observer, RunRow, Samples
+from dem_cli.records.frames import Frame
+from dem_cli.records.history_rows import HistoryRow, RunRow, Samples
+from dem_cli.records.ports import Observer
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation

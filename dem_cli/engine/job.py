@@ -1,4 +1,4 @@
-"""Job: one run of a case, from its model to an outcome; what every analysis shares."""
+"""Job: one run, from its request and model to an outcome; what every analysis shares."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.track import Track
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
+    from dem_cli.records.requests import SolverRequest
 
 
 @dataclass
@@ -34,36 +34,37 @@ class Outcome:
 
 @dataclass
 class Job:
-    """One run: the case, its model, and what its stages share."""
+    """One run: what is asked for, its model, and what its stages share."""
 
-    LASTING: ClassVar[frozenset[str]] = frozenset(("case", "model", "clock", "monitors", "budget", "settings"))
-    case: Case
+    LASTING: ClassVar[frozenset[str]] = frozenset(("request", "model", "clock", "monitors", "budget", "settings"))
+    request: SolverRequest
     model: Model
     clock: Clock
     monitors: Monitors
     budget: Budget
     settings: Settings = DEFAULT
-    skipped: list[str] = field(default_factory=list)  # what the case did not need
+    skipped: list[str] = field(default_factory=list)  # what was not needed
     warnings: list[str] = field(default_factory=list)
     contradictions: list[str] = field(default_factory=list)  # of how it ended, which stand beside that
 
     @classmethod
-    def start(cls, case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Job:
+    def start(cls, request: SolverRequest, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Job:
         """A job that reports to `observer`."""
-        return cls(case, model, Clock(observer), Monitors(case, model), Budget(case.analysis.max_steps), settings)
+        monitors, budget = Monitors(request.monitors, model), Budget(request.analysis.max_steps)
+        return cls(request, model, Clock(observer), monitors, budget, settings)
 
     def stiffness(self, kinematics: str) -> float:
         """kn·h/W of "auto" joints in a static analysis, at least."""
         return static_ratio(self.model, kinematics, self.settings.stiffness)
 
     def simulation(self, kinematics: str, ratio: float | None = None, elastic: bool = False) -> Simulation:
-        """A compiled simulation of the case; ratio: kn·h/W of "auto" joints (None: that of the settings).
+        """A compiled simulation; ratio: kn·h/W of "auto" joints (None: that of the settings).
 
         Where geometry moves they stand for rigid ones (engine/rigid_joints.py) and are stiffer if the structure leans
         too far on them; elastic: they are the springs that they are.
         """
         ratio = self.stiffness(kinematics) if ratio is None else ratio
-        sim, resolution = self._compiled(kinematics, ratio), getattr(self.case.analysis, "resolution", None)
+        sim, resolution = self._compiled(kinematics, ratio), self.request.analysis.resolution
         if kinematics == "fixed" or elastic:
             sim.takes_back = False
             return sim
@@ -74,24 +75,24 @@ class Job:
         return sim
 
     def moving_simulation(self, elastic: bool = False) -> Simulation:
-        """A simulation whose geometry moves, unless the case says that it does not; elastic as for `simulation`."""
-        return self.simulation("fixed" if self.case.analysis.kinematics == "fixed" else "large", elastic=elastic)
+        """A simulation whose geometry moves, unless fixed geometry is asked for; elastic as for `simulation`."""
+        return self.simulation("fixed" if self.request.analysis.kinematics == "fixed" else "large", elastic=elastic)
 
     def softer(self, sim: Simulation, times: float) -> Simulation:
         """The same as a simulation whose geometry moves, on "auto" joints that are so many times as soft."""
         softer = self._compiled("large", ratio_of(sim) / times)
         softer.takes_back, softer.leans = sim.takes_back, leaning(softer)
-        softer.shown = shown_closure(softer, getattr(self.case.analysis, "resolution", None))
+        softer.shown = shown_closure(softer, self.request.analysis.resolution)
         return softer
 
     def _compiled(self, kinematics: str, ratio: float) -> Simulation:
-        integrates = integrates_with(self.case, kinematics)
-        tilting = getattr(self.case.analysis, "pattern", None) == "tilt"
+        integrates = integrates_with(self.request, kinematics)
+        tilting = self.request.analysis.tilting
         return self.clock.compiled(
             lambda: Simulation(
                 self.model,
-                law_of(self.case),
-                joint_properties(self.case, self.model, ratio, integrates=integrates),
+                law_of(self.request),
+                joint_properties(self.request, self.model, ratio, integrates=integrates),
                 kinematics,
                 live_scale=1.0 if tilting else live_scale(self.model),
                 tilting=tilting,
@@ -100,8 +101,8 @@ class Job:
         )
 
     def first_simulation(self) -> Simulation:
-        """The simulation that finds equilibria and failure, with the kinematics that the case asks for or needs."""
-        moving = why_moving(self.case, self.model)
+        """The simulation that finds equilibria and failure, with the kinematics that are asked for or needed."""
+        moving = why_moving(self.request, self.model)
         if moving is None:
             self.skipped.append("large displacements: the geometry of the start is exact for a failure load")
             self.skipped.append("detection: done once, nothing moves visibly before failure")
@@ -113,14 +114,14 @@ class Job:
 
     def track(self, sim: Simulation) -> Track:
         """Rows and frames of a simulation."""
-        return Track(sim, self.clock, self.monitors, self.case.output.snapshots)
+        return Track(sim, self.clock, self.monitors, self.request.snapshots)
 
     def outcome(self, sims: list[Simulation], found: dict[str, Any]) -> Outcome:
         """The summary of all simulations of this job, audited."""
         worst = max((closure(sim) for sim in sims), key=abs)
         overlap = max(measures.largest_overlap(sim) / sim.smallest for sim in sims)
-        self.warnings += doubts(self.case, sims, found)
-        if found.get("status") == "ok" and unproven(self.case, sims[0]):
+        self.warnings += doubts(self.request, sims, found)
+        if found.get("status") == "ok" and unproven(self.request, sims[0]):
             found = found | {"status": "not converged"}
         summary = {
             "joints": sims[0].first_joints,

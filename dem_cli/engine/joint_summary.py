@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.assembly.restraints import MOTIONS
 from dem_cli.contact.drawn_joints import OPEN, DrawnJoints
 from dem_cli.engine import measures
 from dem_cli.engine.simulation import Simulation
 from dem_cli.links.matrices import each
+from dem_cli.model.model import MOTIONS
 
 SECTIONS = {"tie": "ties", "reinforcement": "bars"}  # kind of link: key of the summary
 LAST_EQUILIBRIUM, END = "last equilibrium", "end"

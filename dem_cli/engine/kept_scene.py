@@ -14,7 +14,7 @@ import numpy as np
 
 from dem_cli.kernels.fixed_joints import FixedJoints
 from dem_cli.kernels.tiles.joint_tiles import NO_TILES, tiled
-from dem_cli.output.resume.likeness import alike
+from dem_cli.records.likeness import alike
 
 Simulation = Any  # that of simulation.py, which imports this file
 _ROWS: dict[str, dict[str, str]] = {  # fields of records by how many rows they have; of those with "?" maybe none

@@ -14,16 +14,16 @@ from dem_cli.model.model import Model
 from dem_cli.model.scales import smallest_edge, structures
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
+    from dem_cli.records.requests import SolverRequest
 
 
-def why_moving(case: Case, model: Model) -> str | None:
-    """Why geometry moves on the way to failure ("": the case says so); None: that of the start is good enough.
+def why_moving(request: SolverRequest, model: Model) -> str | None:
+    """Why geometry moves on the way to failure ("": it is asked for); None: that of the start is good enough.
 
-    Raises CaseError where the case asks for fixed geometry that its joints do not allow.
+    Raises CaseError where fixed geometry is asked for that joints do not allow.
     """
-    wanted = case.analysis.kinematics
-    profiles = [name for name, joint in case.joints.items() if joint.profile is not None]
+    wanted = request.analysis.kinematics
+    profiles = [name for name, joint in request.joints.named.items() if joint.profile is not None]
     if profiles:
         reason = f"microrotations at the profile of joint '{profiles[0]}' move the blocks"
         if wanted == "fixed":
@@ -31,30 +31,30 @@ def why_moving(case: Case, model: Model) -> str | None:
         return reason
     if wanted != "auto":
         return "" if wanted == "large" else None
-    if case.imperfection:
+    if request.imperfect:
         return "imperfections of blocks leave gaps that may close"
     gaps = gaps_of_start(model)
     gaps = gaps.where(gaps.close)
     if len(gaps.widths):
         return f"{gap_words(model, gaps)} may close"
-    wedges = wedges_of_start(model, joint_properties(case, model, ratio=1.0))  # whatever the stiffness
+    wedges = wedges_of_start(model, joint_properties(request, model, ratio=1.0))  # whatever the stiffness
     return f"{gap_words(model, wedges)} may close at one end" if len(wedges.widths) else None
 
 
-def gaps_may_close(case: Case, model: Model) -> bool:
+def gaps_may_close(request: SolverRequest, model: Model) -> bool:
     """Whether blocks start with gaps, drawn or of imperfections, that may close on the way to failure."""
-    return bool(case.imperfection) or bool(gaps_of_start(model).close.any())
+    return request.imperfect or bool(gaps_of_start(model).close.any())
 
 
-def fixed_beside(case: Case, model: Model) -> np.ndarray | None:
+def fixed_beside(request: SolverRequest, model: Model) -> np.ndarray | None:
     """Free blocks of connected structures whose gaps may close, (n_blocks,) bool, where there are others beside them.
 
     None: nothing moves geometry, or something that is no gap, or every structure has gaps.
     """
-    profiled = any(joint.profile is not None for joint in case.joints.values())
-    if case.analysis.kinematics != "auto" or profiled or case.imperfection or model.links:
+    profiled = any(joint.profile is not None for joint in request.joints.named.values())
+    if request.analysis.kinematics != "auto" or profiled or request.imperfect or model.links:
         return None
-    properties = joint_properties(case, model, ratio=1.0)
+    properties = joint_properties(request, model, ratio=1.0)
     gaps = gaps_of_start(model)
     closing = [gaps.blocks[gaps.close], wedges_of_start(model, properties).blocks]
     if not any(map(len, closing)):

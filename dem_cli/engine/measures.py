@@ -18,7 +18,8 @@ from dem_cli.links.link import FIXED_POINT
 from dem_cli.links.matrices import softest
 from dem_cli.model import uniform_strain
 from dem_cli.model.following_loads import FollowingLoads
-from dem_cli.output.record import ContactRecord, Energy, Frame, LinkPlaces, LinkRecord
+from dem_cli.records.frames import ContactRecord, Frame, LinkPlaces, LinkRecord
+from dem_cli.records.history_rows import Energy
 
 ROUND_OFF = 1e-9  # of forces that cancel on a block: what is left of them is none
 NET, ALL = 0, 1  # of Contacts.exchanged

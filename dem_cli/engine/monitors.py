@@ -1,4 +1,4 @@
-"""[[monitor]]: numbers followed through a run; the same formulas for one instant and for a stretch of time.
+"""Monitors: numbers followed through a run; the same formulas for one instant and for a stretch of time.
 
 A sample holds position (with the angle, in space the rotation vector), velocity and acceleration of a block, all at
 one instant and relative to the base: samples are (n, n_watched, 3, n_dof).
@@ -26,12 +26,12 @@ from dem_cli.model.scales import origin_of
 from dem_cli.model.section_cuts import SectionCut, drift_ends, section_cut, section_forces
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import Case, Monitor
     from dem_cli.contact.between import StartJoints
     from dem_cli.engine.simulation import Simulation
+    from dem_cli.records.requests import MonitorRequest
 
 GAUGES = {"displacement": slot.PLACE, "velocity": slot.SPEED, "rotation": slot.TURN}  # whose extremes are of all steps
-OF_BASE = {"acceleration": 0, "velocity": 1, "displacement": 2}  # as output.record.Samples.base
+OF_BASE = {"acceleration": 0, "velocity": 1, "displacement": 2}  # as records.history_rows.Samples.base
 
 
 class Points(NamedTuple):
@@ -168,13 +168,13 @@ class CutMonitor(NamedTuple):
 
 
 class Monitors:
-    """Values of all monitors of a case, in the order of the case file.
+    """Values of all monitors of a run, in the order in which they are asked for.
 
     watched  numbers of the blocks that must be known for it, ascending
     """
 
-    def __init__(self, case: Case, model: Model):
-        self.tables, self.model = case.monitor, model
+    def __init__(self, requests: Sequence[MonitorRequest], model: Model):
+        self.requests, self.model = requests, model
         blocks = self._blocks()
         self.watched = np.unique(np.array([b for pair in blocks for b in pair], np.int64))
         self.origin = origin_of(model)
@@ -185,32 +185,32 @@ class Monitors:
         self._of_reactions: list[ReactionMonitor] = []
         self._of_cuts: list[CutMonitor] = []
         pairs: list[tuple] = []
-        for column, (table, found) in enumerate(zip(self.tables, blocks, strict=True)):
-            if (link := table.tie or table.bar) is not None:
-                number = model.link_names.index(link)
-                self._of_links.append((column, reading_of(model.links, number, table.quantity, table.at or 0.0)))
-            elif table.of_what_holds:
-                blocks_held = model.held_among(table.selected)
-                self._of_reactions.append(ReactionMonitor(column, blocks_held, table.quantity, table.component))
-            elif table.cut is not None and table.height is None:
-                self._of_cuts.append(CutMonitor(column, section_cut(table.cut), table.quantity))
-            elif table.cut is not None:
-                self._at_points.append(self._drift_monitor(column, table, found))
-            elif table.between is None:
-                self._at_points.append(self._point_monitor(column, table, found))
+        for column, (one, found) in enumerate(zip(requests, blocks, strict=True)):
+            if one.link is not None:
+                number = model.link_names.index(one.link)
+                self._of_links.append((column, reading_of(model.links, number, one.quantity, one.at)))
+            elif one.of_what_holds:
+                blocks_held = model.held_among(one.selected)
+                self._of_reactions.append(ReactionMonitor(column, blocks_held, one.quantity, one.component))
+            elif one.cut is not None and one.height is None:
+                self._of_cuts.append(CutMonitor(column, section_cut(one.cut), one.quantity))
+            elif one.cut is not None:
+                self._at_points.append(self._drift_monitor(column, one, found))
+            elif one.between is None:
+                self._at_points.append(self._point_monitor(column, one, found))
             else:
-                pairs += self._pairs(column, table.quantity, *found)
+                pairs += self._pairs(column, one.quantity, *found)
         self._at_joints: JointMonitors | None = None
         if pairs:
             first, second, apart, axes, columns = map(np.array, zip(*pairs, strict=True))
             unique, begins = np.unique(columns, return_index=True)
-            lengths = np.array([model.dimension > 2 and self.tables[k].quantity == "slip" for k in unique])
+            lengths = np.array([model.dimension > 2 and self.requests[k].quantity == "slip" for k in unique])
             self._at_joints = JointMonitors(first, second, apart, axes, begins, unique, lengths)
         self._points = self._all_points()
 
     def values(self, sim: Simulation) -> tuple[float, ...]:
         """At this instant; velocities per unit of the solver's time."""
-        if not self.tables:
+        if not self.requests:
             return ()
         bodies, watched = sim.bodies, self.watched
         places = np.column_stack([bodies.positions[watched], rotation_vectors(bodies.orientations[watched])])
@@ -244,8 +244,8 @@ class Monitors:
         samples: of the watched blocks, (n, n_watched, 3, n_dof); base: acceleration, velocity and displacement
         of the base at the same instants [m, s], (n, 3, d); links: state of all links, (n, n_links, 3).
         """
-        out = np.zeros((len(samples), len(self.tables)))
-        if self.tables:
+        out = np.zeros((len(samples), len(self.requests)))
+        if self.requests:
             motion = PointMotion(self._points, samples)
             for monitor in self._at_points:
                 monitor.fill(out, motion, base)
@@ -304,7 +304,7 @@ class Monitors:
         Of `gauged` at every step, whose number 0 is at `start` [s]; of others those of their samples, at `times`. Where
         there are none: minus and plus infinity.
         """
-        found = np.tile([-np.inf, 0.0, np.inf, 0.0], (len(self.tables), 1))
+        found = np.tile([-np.inf, 0.0, np.inf, 0.0], (len(self.requests), 1))
         if len(times):
             known = np.where(np.isfinite(values), values, 0.0)  # a run may end in nonsense
             high, low, each = known.argmax(axis=0), known.argmin(axis=0), np.arange(values.shape[1])
@@ -327,8 +327,8 @@ class Monitors:
     def _blocks(self) -> list[tuple[int, ...]]:
         """Blocks of each monitor; that there are any is checked with the model."""
         found = list[tuple[int, ...]]()
-        for monitor in self.tables:
-            if monitor.tie is not None or monitor.bar is not None or monitor.of_what_holds:
+        for monitor in self.requests:
+            if monitor.link is not None or monitor.of_what_holds:
                 found.append(())
             elif monitor.cut is not None:
                 ends = drift_ends(monitor.cut, monitor.height) if monitor.height is not None else []
@@ -348,24 +348,24 @@ class Monitors:
         self._places.append((block, arm))
         return len(self._places) - 1
 
-    def _point_monitor(self, column: int, table: Monitor, blocks: Sequence[int]) -> PointMonitor:
+    def _point_monitor(self, column: int, one: MonitorRequest, blocks: Sequence[int]) -> PointMonitor:
         """Of a point, or of the centroids of blocks, weighted by their masses."""
         arm = np.zeros(self.model.dimension)
-        if table.point is not None:
-            arm = np.array(table.point) - self.model.centroids[blocks[0]]
+        if one.point is not None:
+            arm = np.array(one.point) - self.model.centroids[blocks[0]]
         masses = self.model.masses[list(blocks)]
         points = [self._point(block, arm) for block in blocks]
-        return PointMonitor(column, points, masses / masses.sum(), table.quantity, table.component, table.absolute)
+        return PointMonitor(column, points, masses / masses.sum(), one.quantity, one.component, one.absolute)
 
-    def _drift_monitor(self, column: int, table: Monitor, blocks: Sequence[int]) -> PointMonitor:
+    def _drift_monitor(self, column: int, one: MonitorRequest, blocks: Sequence[int]) -> PointMonitor:
         """Of the points at both ends of the height of a pier."""
-        assert table.cut is not None
-        assert table.height is not None
-        cut = section_cut(table.cut)
-        ends = drift_ends(table.cut, table.height)
+        assert one.cut is not None
+        assert one.height is not None
+        cut = section_cut(one.cut)
+        ends = drift_ends(one.cut, one.height)
         arms = [end - self.model.centroids[block] for end, block in zip(ends, blocks, strict=True)]
         points = [self._point(block, arm) for block, arm in zip(blocks, arms, strict=True)]
-        weights = np.array([-1.0, 1.0]) / table.height
+        weights = np.array([-1.0, 1.0]) / one.height
         return PointMonitor(column, points, weights, "displacement", None, False, cut.axes[1])
 
     def _pairs(self, column: int, quantity: str, first: int, second: int) -> list[tuple]:

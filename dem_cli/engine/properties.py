@@ -1,4 +1,4 @@
-"""Joint properties: from the [joints] of a case to stiffness and law of every pair of materials."""
+"""Joint properties: from joints as they are asked for to stiffness and law of every pair of materials."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.arithmetic.chance import lognormal_factor
-from dem_cli.assembly.assemble import joint_table, joints_in_heads
 from dem_cli.contact.block_compliance import BlockCompliance, block_compliance
 from dem_cli.contact.joints import JointProperties, LawRows
 from dem_cli.contact.layout import PointLayout
@@ -24,30 +23,29 @@ from dem_cli.model.model import Model
 from dem_cli.model.scales import stiffness_scale
 
 if TYPE_CHECKING:
-    from dem_cli.case.schema import Case
+    from dem_cli.records.requests import JointRequest, SolverRequest
 
 
-def laws_of(case: Case) -> list[Law]:
-    """The laws of all joints, each once, in the order of the case."""
-    return list({law.name: law for law in map(_law, case.joints.values())}.values())
+def laws_of(request: SolverRequest) -> list[Law]:
+    """The laws of all joints, each once, in their order."""
+    return list({law.name: law for law in map(_law, request.joints.named.values())}.values())
 
 
-def law_of(case: Case) -> Law:
-    """The law of all joints; where the case mixes laws, one that finds the law of each."""
-    return mixed(tuple(laws_of(case)))
+def law_of(request: SolverRequest) -> Law:
+    """The law of all joints; where several laws are mixed, one that finds the law of each."""
+    return mixed(tuple(laws_of(request)))
 
 
-def integrates_with(case: Case, kinematics: str) -> bool:
+def integrates_with(request: SolverRequest, kinematics: str) -> bool:
     """Whether the pressure on elastic joints is integrated over their faces in this analysis, with these kinematics.
 
     Not where a failure load is sought in geometry of the start: it is that of rigid blocks, and faces close for ever.
     """
-    searches = case.analysis.kind == "pushover" and getattr(case.analysis, "control", "load") == "load"
-    return kinematics != "fixed" or not searches
+    return kinematics != "fixed" or not request.analysis.searches
 
 
 def joint_properties(
-    case: Case,
+    request: SolverRequest,
     model: Model,
     ratio: float = DEFAULT.stiffness.statics,
     step: float = math.inf,
@@ -63,14 +61,14 @@ def joint_properties(
     integrates: whether the pressure on elastic joints is integrated over their faces. Not where blocks land, in any
     case: a face that takes the blow as a whole does not lose what Housner's block does.
     """
-    names, by_material = joint_table(case)
-    heads = joints_in_heads(case)
+    asked = request.joints
+    names, by_material, heads = tuple(asked.named), asked.by_material, asked.heads
     lying = _with_heads(model, by_material, heads)
     auto = ratio * stiffness_scale(model)
-    laws = laws_of(case)
-    tables = [case.joints[name] for name in names]
+    laws = laws_of(request)
+    tables = list(asked.named.values())
     free = np.array([[table.kn == "auto", table.kn == table.ks == "auto"] for table in tables])
-    compliance = block_compliance(model, np.array([m.moduli for m in case.materials.values()]), free)
+    compliance = block_compliance(model, asked.moduli, free)
     kn = np.array([auto if table.kn == "auto" else table.kn for table in tables])
     ks = np.array([k if table.ks == "auto" else table.ks for table, k in zip(tables, kn, strict=True)])
     rows = [_columns(table, k, step) for table, k in zip(tables, kn, strict=True)]
@@ -80,22 +78,22 @@ def joint_properties(
         values = _law(table).intact
         intact[i, : len(values)] = values
     columns = np.stack([row(laws, _law(table), values, width) for table, values in zip(tables, rows, strict=True)])
-    bending = [table.bends for table in case.materials.values()]
+    bending = asked.bends
     deforming = _with_deforming_blocks(model, lying, compliance, np.flatnonzero(bending))
     bent = set(lying[:, np.flatnonzero(bending)].ravel().tolist())  # two points cannot tell how a block bends
-    lands = hasattr(case.analysis, "margin") if lands is None else lands
+    lands = request.in_seconds if lands is None else lands
     integrates = integrates and not lands
     integrated = np.array([integrates and table.integrates and k not in bent for k, table in enumerate(tables)])
     layouts = tuple(
         None if integrated[k] and (k in deforming or table.kn != "auto")
-        else _layout(table, case, k in deforming, lands and k not in bent)
+        else _layout(table, asked, k in deforming, lands and k not in bent)
         for k, table in enumerate(tables)
     )  # fmt: skip
     spread = [
         (layout is None and _spreads(table)) or table.integrates for layout, table in zip(layouts, tables, strict=True)
     ]
     rigid = free[:, 0] & _with_rigid_blocks(names, model, lying, compliance)
-    own_rows = _own_rows(tables, laws, columns, _OfEachJoint(names, step, compliance is not None, case.seed))
+    own_rows = _own_rows(tables, laws, columns, _OfEachJoint(names, step, compliance is not None, asked.seed))
     law = mixed(tuple(laws))
     spreads = np.array(spread) & (model.n_modes == 0)
     return JointProperties(
@@ -113,12 +111,12 @@ def _spreads(table: StiffJoint) -> bool:
     return not table.asks_for_points and not _law(table).bonded
 
 
-def _layout(table: StiffJoint, case: Case, deforms: bool, lands: bool) -> PointLayout | None:
+def _layout(table: StiffJoint, asked: JointRequest, deforms: bool, lands: bool) -> PointLayout | None:
     """Where the contact points of a joint are; None: at its two ends, in space at its vertices."""
     if table.profile is not None:
-        return PointLayout(seed=case.seed, **table.profile.ranges)
-    points = table.contact_points(case.dimension, deforms, lands)
-    centred = table.centred(case.dimension, deforms, lands)
+        return PointLayout(seed=asked.seed, **table.profile.ranges)
+    points = table.contact_points(asked.dimension, deforms, lands)
+    centred = table.centred(asked.dimension, deforms, lands)
     return None if points == 2 and not centred else PointLayout(points, centred)
 
 

@@ -31,7 +31,7 @@ from dem_cli.links.link import Springs
 from dem_cli.links.matrices import elastic_energy_of_links, joined
 from dem_cli.model.model import Model
 from dem_cli.model.scales import depth, origin_of, smallest_edge
-from dem_cli.output.resume.stages import NOTHING_KEPT, Stages
+from dem_cli.records.ports import NOTHING_KEPT, Stages
 
 
 class Simulation:

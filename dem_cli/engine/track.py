@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from dem_cli.engine import measures
-from dem_cli.output.record import Frame, HistoryRow, Observer
+from dem_cli.records.frames import Frame
+from dem_cli.records.history_rows import HistoryRow
+from dem_cli.records.ports import Observer
 
 if TYPE_CHECKING:
     from dem_cli.engine.monitors import Monitors

@@ -13,7 +13,7 @@ from dem_cli.kernels.records import Joints, StrainRates
 from dem_cli.model.mode_masses import mass_matrices
 from dem_cli.model.model import NO_MODES, Model
 from dem_cli.model.uniform_strain import rotations_of, turned_mode_loads
-from dem_cli.tables.damping import MaxwellElement
+from dem_cli.records.requests import MaxwellRequest
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def joint_frequencies(model: Model, joints: Joints) -> np.ndarray:
     return np.sqrt(np.add.reduceat(joints.kn, joints.starts[:-1]) * lightness)
 
 
-def element_numbers(elements: tuple[MaxwellElement, ...]) -> np.ndarray:
+def element_numbers(elements: tuple[MaxwellRequest, ...]) -> np.ndarray:
     """Stiffness over that of the joint [-] and rate [1/s] of each, (n, 2).
 
     At its own frequency an element of stiffness share r loses r/2 of the joint's stiffness in quadrature: ratio r/4,

@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from dem_cli.assembly.ground_motions import suites_of
 from dem_cli.ensembles.batch import Answer, ShakingTrial, Task
 from dem_cli.errors import CaseError, CaseProblem
-from dem_cli.motion.ground_motions import suites_of
-from dem_cli.output.record import MOVES
+from dem_cli.records.statuses import MOVES
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

@@ -7,6 +7,7 @@ import time
 from copy import deepcopy
 from typing import TYPE_CHECKING, NamedTuple
 
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.dynamics.braked_motion import BrakedMotion
 from dem_cli.dynamics.coda import Ending, ending, longest_coda
 from dem_cli.dynamics.collapse_criterion import check_energy, check_finite, fallen
@@ -17,16 +18,16 @@ from dem_cli.engine.job import Job
 from dem_cli.engine.measures import closure, energy
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.errors import SolverError
-from dem_cli.output.record import COLLAPSED, Observer
-from dem_cli.output.resume.stages import NOTHING_KEPT, Stages, stage
+from dem_cli.records.ports import NOTHING_KEPT, Observer, Stages, stage
+from dem_cli.records.statuses import COLLAPSED
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from dem_cli.case.schema import Monitor
     from dem_cli.engine.dynamic import DynamicSimulation
     from dem_cli.ensembles.variants import Variant
     from dem_cli.motion.motion import Motion
+    from dem_cli.records.requests import MonitorRequest
 
 
 class ShakenRunResult(NamedTuple):
@@ -39,12 +40,12 @@ class ShakenRunResult(NamedTuple):
     steps: int
     closure: float | None  # energy error over the largest energy
     seconds: float  # CPU of the thread [s]
-    ending: str = ""  # one of those of output/record.py; empty where the run failed
+    ending: str = ""  # one of those of records/statuses.py; empty where the run failed
     braked: float = 0.0  # share of the energy that mass damping took from blocks that rock, slide or fall
     impacts: int = 0  # steps in which contact points met
 
 
-def told_peaks(monitors: Sequence[Monitor], run: ShakenRunResult) -> tuple[float, ...]:
+def told_peaks(monitors: Sequence[MonitorRequest], run: ShakenRunResult) -> tuple[float, ...]:
     """The peaks of a run; nan where they mean nothing."""
     left_out = without_meaning(monitors, run.impacts)
     return tuple(math.nan if i in left_out else peak for i, peak in enumerate(run.peaks))
@@ -79,15 +80,15 @@ class RestedStructure:
     """A structure that has come to rest, from which any number of motions start."""
 
     def __init__(self, variant: Variant, records: Sequence[Motion], observer: Observer, settings: Settings = DEFAULT):
-        self.variant, self.case = variant, variant.case
-        job = Job.start(variant.case, variant.model, observer, settings)
+        self.variant, self.request = variant, solver_request(variant.case)
+        job = Job.start(self.request, variant.model, observer, settings)
         history = TimeHistory(job, GroundMotion(records, variant.model))
         self.stands = history.start()
         self.sim, self.step, self.monitors, self.damping = history.sim, history.step, job.monitors, history.damping
         self.compile_seconds = job.clock.compiling
-        self.absolute = any(monitor.absolute for monitor in variant.case.monitor)
+        self.absolute = any(monitor.absolute for monitor in self.request.monitors)
         dt = self.step.step
-        self.every = max(1, round(1.0 / (variant.case.output.rate * dt)))
+        self.every = max(1, round(1.0 / (self.request.rate * dt)))
         self.stretch = self.every * max(1, round(settings.history.look / (self.every * dt)))
 
     def shaken(
@@ -103,7 +104,7 @@ class RestedStructure:
         begun = time.thread_time()
         sim = deepcopy(self.sim)
         ground = GroundMotion([motion.scaled(self.variant.motion) for motion in motions], self.variant.model)
-        peaks, braked = Extremes(len(self.case.monitor)), BrakedMotion(sim)
+        peaks, braked = Extremes(len(self.request.monitors)), BrakedMotion(sim)
         collapsed, at, balance, word = None, None, None, ""
         try:
             end = self._shake(sim, ground, peaks, braked, cancelled, told)
@@ -128,7 +129,7 @@ class RestedStructure:
         told: Callable[[DynamicSimulation, float], None],
     ) -> Ending:
         """How it ends, through the motion and the time after it."""
-        analysis, dt = self.case.analysis, self.step.step
+        analysis, dt = self.request.shaking, self.step.step
         total, motion = math.ceil((analysis.duration or ground.duration) / dt), _Stretches()
 
         def advance(n_steps: int) -> MotionStretch:
@@ -151,4 +152,4 @@ class RestedStructure:
             found = fallen(sim, analysis)
             if found is not None:
                 return Ending(COLLAPSED, found)
-        return ending(sim, analysis, longest_coda(self.case, sim.model), self.step, self.stretch, peaks, advance)
+        return ending(sim, analysis, longest_coda(self.request, sim.model), self.step, self.stretch, peaks, advance)

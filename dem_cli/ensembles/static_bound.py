@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.bisection import Scale
@@ -82,10 +83,11 @@ def stands(case: Case, model: Model, settings: Settings = DEFAULT) -> bool | Non
     from dem_cli.limit.associated import carried
     from dem_cli.limit.cone import friction_of
 
-    structure = start_structure(model, joint_properties(case, model, settings.stiffness.statics))
+    request = solver_request(case)
+    structure = start_structure(model, joint_properties(request, model, settings.stiffness.statics))
     if not structure.dead.any():
         return True  # nothing to carry
-    friction = friction_of(structure.joints, law_of(case))
+    friction = friction_of(structure.joints, law_of(request))
     return carried(_under_load(structure, case), frictional(friction), settings.limit.associated)[0]
 
 

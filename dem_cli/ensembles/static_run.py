@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from dem_cli.dynamics.stability import buckles
 from dem_cli.engine import measures
-from dem_cli.engine.job import Job
 from dem_cli.engine.measures import closure
 from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.ensembles.case_job import CaseJob
 from dem_cli.errors import SolverError
-from dem_cli.output.record import Frame, HistoryRow, Observer
+from dem_cli.records.frames import Frame
+from dem_cli.records.history_rows import HistoryRow
+from dem_cli.records.ports import Observer
 from dem_cli.statics.compliance import compliance
 from dem_cli.statics.equilibrium import NOTHING_KNOWN, Ahead, Verdict, settle_or_fail, stand, unexpected
 from dem_cli.statics.mechanism import describe
@@ -60,7 +62,7 @@ class StaticRun(NamedTuple):
     result: StaticRunResult
     case: Case
     model: Model
-    job: Job
+    job: CaseJob
     sim: Simulation
     frame: Frame  # at the end
     rows: list[HistoryRow]
@@ -78,7 +80,7 @@ def decide(
 
     hopeless: known to have no equilibrium, so that the first failure will do.
     """
-    job = Job.start(case, model, observer, settings)
+    job = CaseJob.of_case(case, model, observer, settings)
     run = _decided(job, job.first_simulation(), value, hopeless)
     given = run.sim.properties.given
     soft = run.result.displacement > settings.safety.soft * case.analysis.resolution * run.sim.smallest
@@ -87,7 +89,7 @@ def decide(
     return run
 
 
-def _decided(job: Job, sim: Simulation, value: float, hopeless: bool) -> StaticRun:
+def _decided(job: CaseJob, sim: Simulation, value: float, hopeless: bool) -> StaticRun:
     track, before, share = job.track(sim), sim.save(), 0.0
     try:
         verdict, before, share = _loaded(job, sim, track, hopeless)
@@ -116,7 +118,7 @@ def _decided(job: Job, sim: Simulation, value: float, hopeless: bool) -> StaticR
     return StaticRun(result, job.case, job.model, job, sim, frame, track.kept)
 
 
-def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Verdict, SavedState, float]:
+def _loaded(job: CaseJob, sim: Simulation, track: Track, hopeless: bool) -> tuple[Verdict, SavedState, float]:
     """The verdict, the state before the last load was put on, and the share of the load that is on."""
     safety = sim.settings.safety
     before = sim.save()
@@ -145,14 +147,14 @@ def _loaded(job: Job, sim: Simulation, track: Track, hopeless: bool) -> tuple[Ve
     return verdict, before, at
 
 
-def _stable(job: Job, sim: Simulation, verdict: Verdict) -> Verdict:
+def _stable(job: CaseJob, sim: Simulation, verdict: Verdict) -> Verdict:
     """The verdict, a failure where it is an equilibrium that buckles."""
     if verdict.state == "equilibrium" and buckles(sim, job.budget) is not None:
         return Verdict("failure", verdict.unbalanced, buckles=True)
     return verdict
 
 
-def _next_to_failure(job: Job, sim: Simulation, load: float, elastic: float) -> tuple[Verdict, SavedState] | None:
+def _next_to_failure(job: CaseJob, sim: Simulation, load: float, elastic: float) -> tuple[Verdict, SavedState] | None:
     """Verdict and state before the load, from a state next to failure where the structure is large (warm_start.py).
 
     None: there is no such state, or it fails under a load below its own, which proves nothing; all is as it was.
@@ -194,7 +196,7 @@ def fall(run: StaticRun, observer: Observer, until: float, frames: int) -> str |
 
     Frames and rows go to the observer; returns why it did not go that far, if so.
     """
-    job = Job.start(run.case, run.model, observer, run.job.settings)
+    job = CaseJob.of_case(run.case, run.model, observer, run.job.settings)
     sim = job.simulation("large")
     sim.count_from(run.sim.steps)
     soften_falls(sim, until)

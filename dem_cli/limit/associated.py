@@ -32,7 +32,7 @@ from dem_cli.limit.program import (
     standing,
 )
 from dem_cli.limit.settings import DEFAULT_LIMIT, AssociatedSettings
-from dem_cli.output.record import FALLS
+from dem_cli.records.statuses import FALLS
 
 OK = "ok"
 LOCKED = "no load of this direction makes it fail"

@@ -9,7 +9,7 @@ import numpy as np
 from dem_cli.geometry.rotation import quaternions, swept
 from dem_cli.limit.matrices import Structure
 from dem_cli.model.model import Model
-from dem_cli.output.record import STATES, ContactRecord, Frame
+from dem_cli.records.frames import STATES, ContactRecord, Frame
 
 SHOWN_MOTION = 0.01  # mechanism of a frame: largest motion over the largest radius of a block that can move
 PRESSED_SHARE = 1e-6  # of the largest normal force: what an interior point leaves at open points is smaller

@@ -28,6 +28,7 @@ from dem_cli.model.following_loads import FollowingLoads
 NONE = np.zeros(0, np.int64)
 NO_AXES = np.zeros((0, 4))
 NO_MODES = np.zeros((0, 0))
+MOTIONS = {2: ("x", "y", "rotation"), 3: ("x", "y", "z", "rotation_x", "rotation_y", "rotation_z")}  # of a block
 NO_RESTRAINTS = np.zeros((0, 0), bool)
 NO_PIECES = NO_COURSES = np.zeros((0, 2), np.int64)
 NO_SHAPES, NO_STRAINS = np.zeros((0, 6, 2, 6)), np.zeros(0)

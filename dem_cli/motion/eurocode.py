@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dem_cli.tables.spectrum import SpectrumTable
-
 SOILS = {  # type -> ground type -> S, TB, TC, TD [s]: EN 1998-1, tables 3.2 and 3.3
     "EC8-1": {
         "A": (1.0, 0.15, 0.4, 2.0),
@@ -81,12 +79,3 @@ def listed(points: Sequence[tuple[float, float]], damping: float = 0.05) -> Targ
         return np.interp(at, periods, values)
 
     return TargetSpectrum(acceleration, float(values[0]), damping, "given spectrum")
-
-
-def target_of(table: SpectrumTable) -> TargetSpectrum:
-    """The spectrum that a table asks for."""
-    if isinstance(table.spectrum, str):
-        assert table.soil is not None
-        assert table.ag is not None
-        return eurocode(table.spectrum, table.soil, table.ag, table.damping)
-    return listed(table.spectrum, table.damping)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from dem_cli.motion.eurocode import TargetSpectrum, target_of
+from dem_cli.motion.eurocode import TargetSpectrum
 from dem_cli.motion.intensity_measures import LEAST_MEAN, fit
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.table import ArtificialTable
@@ -38,7 +38,7 @@ def clauses(motions: Sequence[Motion], table: ArtificialTable) -> list[Clause]:
     ]
     target = _elastic(table)
     if target is None:
-        ground = target_of(table).scaled(abs(table.scale))
+        ground = table.target.scaled(abs(table.scale))
         mean = fit(motions, ground, table.first_period).mean_peak
         unknown = f"the spectrum is for {100.0 * table.damping:g} %, that for {100.0 * DAMPING:g} % is not given"
         return [*found, _peaks(mean), Clause("(4)c", None, unknown)]
@@ -57,7 +57,7 @@ def _elastic(table: ArtificialTable) -> TargetSpectrum | None:
     """The elastic spectrum for a damping of 5 %; None where the case has one for another damping alone."""
     if not isinstance(table.spectrum, str) and table.damping != DAMPING:
         return None
-    return target_of(table.model_copy(update={"damping": DAMPING})).scaled(abs(table.scale))
+    return table.model_copy(update={"damping": DAMPING}).target.scaled(abs(table.scale))
 
 
 def meets(found: Sequence[Clause]) -> bool | None:

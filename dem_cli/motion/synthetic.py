@@ -15,7 +15,7 @@ import numpy as np
 from dem_cli.arithmetic import functions
 from dem_cli.arithmetic.products import product
 from dem_cli.arithmetic.small_matrices import inverse
-from dem_cli.motion.eurocode import TargetSpectrum, target_of
+from dem_cli.motion.eurocode import TargetSpectrum
 from dem_cli.motion.record import Accelerogram, record
 from dem_cli.motion.spectrum import OscillatorFilter, oscillator, pseudo_accelerations
 
@@ -38,7 +38,7 @@ def suite(table: ArtificialTable, seed: int, stream: int = 0) -> list[Accelerogr
     count = round(table.duration / table.time_step)
     times = table.duration / count * np.arange(count + 1)
     histories = accelerograms(
-        target_of(table), times, envelope(times, table.rise, table.plateau), table.iterations,
+        table.target, times, envelope(times, table.rise, table.plateau), table.iterations,
         [np.random.default_rng([seed, stream, i]) for i in range(table.count)],
     )  # fmt: skip
     return [record(times, history) for history in histories]

@@ -11,7 +11,7 @@ import numpy as np
 from dem_cli.arithmetic.small_matrices import diagonalised
 from dem_cli.model.copies import repeated
 from dem_cli.model.model import Model
-from dem_cli.output.record import Frame, FrameStack
+from dem_cli.records.frames import Frame, FrameStack
 
 
 def mean_stresses(model: Model, frame: Frame | FrameStack) -> np.ndarray:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.model.model import Model
-from dem_cli.output.record import FRAME_ARRAYS, FrameStack, JointPlaces, LinkPlaces, LinkRecord
+from dem_cli.records.frames import FRAME_ARRAYS, FrameStack, JointPlaces, LinkPlaces, LinkRecord
 
 
 class CaseOrder:

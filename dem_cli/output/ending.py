@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from dem_cli.output.record import COLLAPSED, MOVES, ROCKS, STOOD
+from dem_cli.records.statuses import COLLAPSED, MOVES, ROCKS, STOOD
 
 MOVES_WORDS = "still moving at the end: whether it falls is not known, and a larger peak may follow"
 _KNOWN = {STOOD: STOOD, ROCKS: f"stood, {ROCKS}", MOVES: MOVES_WORDS}

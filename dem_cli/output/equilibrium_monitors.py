@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from dem_cli.output.record import MONITOR_UNITS, HistoryRow
+from dem_cli.records.history_rows import MONITOR_UNITS, HistoryRow
 
 PARTS = ("value", "load", "unit")  # what is said of a monitor
 AT_REST = ("gravity", "loading", "settlement")  # stages of rows in equilibrium

@@ -13,7 +13,7 @@ from dem_cli.output.atomic_file import whole
 from dem_cli.output.csv_cells import cell
 from dem_cli.output.layout import JOINT_STATES
 from dem_cli.output.reader import JointHistory, Results
-from dem_cli.output.record import STATES
+from dem_cli.records.frames import STATES
 
 JOINTS_TABLE = "joints.csv"
 PLACES = ("steepness [deg]", "length [m]", "area [m2]")

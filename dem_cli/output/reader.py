@@ -18,20 +18,20 @@ from dem_cli.model.model import Model
 from dem_cli.output.folder import SUMMARY, require_folder
 from dem_cli.output.integrity.stored_arrays import LaterArray, StoredArrays, check_size, of_hdf5
 from dem_cli.output.layout import FRAMES, MODEL, NAMES, RESULTS_FORMAT, ROW_SCALARS, declared, units_of
-from dem_cli.output.record import (
+from dem_cli.output.series import HistorySeries, read_series
+from dem_cli.output.store import FRAME_SCALARS, RESULTS
+from dem_cli.output.sweep_files import RUNS
+from dem_cli.records.frames import (
     FRAME_ARRAYS,
     STAGES,
     ContactRecord,
-    Energy,
     Frame,
     JointPlaces,
     JointStates,
     LinkPlaces,
     LinkRecord,
 )
-from dem_cli.output.series import HistorySeries, read_series
-from dem_cli.output.store import FRAME_SCALARS, RESULTS
-from dem_cli.output.sweep_files import RUNS
+from dem_cli.records.history_rows import Energy
 
 Stored: TypeAlias = "np.ndarray | LaterArray"  # an array in memory, or one that is read in parts
 

@@ -8,8 +8,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from dem_cli.output.record import BUCKLED, FALLS
 from dem_cli.output.scalars import scalars
+from dem_cli.records.statuses import BUCKLED, FALLS
 
 Value = float | int | str | bool | None
 STRENGTH = "strength"  # what a safety analysis varies where it does not vary a key

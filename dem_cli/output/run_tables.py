@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from dem_cli.output.csv_cells import cell
-from dem_cli.output.record import RunRow
+from dem_cli.records.history_rows import RunRow
 
 TABLES = {"fragility": "fragility.csv", "time-history": "repeats.csv"}  # kind of analysis -> file
 RUN_COLUMNS = ("structure", "record", "intensity", "peak_acceleration", "collapsed", "collapse_time", "what")

@@ -13,7 +13,7 @@ import numpy as np
 from dem_cli.output.csv_cells import cell
 from dem_cli.output.growing_dataset import GrowingGroup
 from dem_cli.output.layout import SERIES, declared
-from dem_cli.output.record import MONITOR_UNITS, Samples
+from dem_cli.records.history_rows import MONITOR_UNITS, Samples
 
 BASE = ("acceleration", "velocity", "displacement")  # as Samples.base
 _AXES = "xyz"

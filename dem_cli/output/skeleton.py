@@ -31,7 +31,8 @@ from dem_cli.output.layout import (
     declared,
     describe,
 )
-from dem_cli.output.record import MONITOR_UNITS, STAGES, STATES, Energy
+from dem_cli.records.frames import STAGES, STATES
+from dem_cli.records.history_rows import MONITOR_UNITS, Energy
 
 FRAMES_AT_ONCE = 8  # that space is made for: few are kept
 _TEXT = h5py.string_dtype()

@@ -22,22 +22,12 @@ from dem_cli.output.growing_dataset import GrowingGroup
 from dem_cli.output.hdf5_file import Hdf5File
 from dem_cli.output.layout import IN_SECONDS, JOINT_PLACES, JOINT_STATES, LINKS, ROW_SCALARS, declared
 from dem_cli.output.paraview.snapshot_files import BLOCKS, FollowedJoints, ParaViewFiles
-from dem_cli.output.record import (
-    FRAME_ARRAYS,
-    STAGES,
-    Energy,
-    Frame,
-    FrameStack,
-    HistoryRow,
-    LinkRecord,
-    RunRow,
-    Samples,
-    stacked,
-)
 from dem_cli.output.run_tables import TABLES, write_runs
 from dem_cli.output.series import SeriesWriter
 from dem_cli.output.skeleton import FRAMES_AT_ONCE, declare_model, fill_model, growing_parts, skeleton
 from dem_cli.output.summary import write_summary
+from dem_cli.records.frames import FRAME_ARRAYS, STAGES, Frame, FrameStack, LinkRecord, stacked
+from dem_cli.records.history_rows import Energy, HistoryRow, RunRow, Samples
 
 RESULTS, CASE, HISTORY_TABLE = "results.h5", "case.toml", "history.csv"
 FRAME_SCALARS = ("step", "load", "displacement", "time")

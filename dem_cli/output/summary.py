@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from dem_cli.output.folder import SUMMARY
-from dem_cli.output.record import ABOVE
 from dem_cli.output.scalars import plain
+from dem_cli.records.statuses import ABOVE
 
 ORDER = (
     "title",

@@ -65,7 +65,7 @@ def with_names(found: dict[str, Any], names: Sequence[str], quantities: Sequence
     repeats = found.get("repeats")
     if not repeats or "peaks" not in repeats:
         return found
-    from dem_cli.output.record import MONITOR_UNITS
+    from dem_cli.records.history_rows import MONITOR_UNITS
 
     spreads = [
         spread and spread | {"unit": MONITOR_UNITS[q]} for spread, q in zip(repeats["peaks"], quantities, strict=True)

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from dem_cli.ensembles.batch import Batch
     from dem_cli.model.model import Model
     from dem_cli.output.folder import OutputFolder
-    from dem_cli.output.record import Observer
     from dem_cli.output.store import ResultWriter
+    from dem_cli.records.ports import Observer
 
 
 class SolverOutcome(Protocol):

@@ -15,7 +15,7 @@ STATIC = ("gravity", "pushover", "cycle", "settlement")  # kinds of analysis tha
 
 def monitor_names(monitors: Sequence[Monitor]) -> list[str]:
     """A different name for each, such as "top-right displacement x"."""
-    from dem_cli.output.record import distinct
+    from dem_cli.output.distinct_names import distinct
 
     def told(monitor: Monitor) -> str:
         words = (monitor.place, "absolute" if monitor.absolute else "", monitor.quantity, monitor.component)

@@ -6,16 +6,17 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.interrupts import look
-from dem_cli.output.record import Observer
 from dem_cli.output.resume.kept_values import Damaged
+from dem_cli.records.ports import Observer
 
 if TYPE_CHECKING:
     from dem_cli.contact.drawn_joints import DrawnJoints
     from dem_cli.model.model import Model
-    from dem_cli.output.record import Frame, HistoryRow, RunRow, Samples
     from dem_cli.output.resume.stages import KeptStages
     from dem_cli.output.store import ResultWriter
     from dem_cli.pipeline.listener import RunListener
+    from dem_cli.records.frames import Frame
+    from dem_cli.records.history_rows import HistoryRow, RunRow, Samples
 
 
 def joints_of(model: Model) -> DrawnJoints:

@@ -12,13 +12,13 @@ from dem_cli.errors import MissingExtra, UsageError
 from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.paraview.vertices import rest_vertices
 from dem_cli.output.reader import Results
-from dem_cli.output.record import Frame
 from dem_cli.output.series import HistorySeries
 from dem_cli.post import frame_measures, style, view_box
 from dem_cli.post.histories import base_colours
 from dem_cli.post.playback import milliseconds, playback
 from dem_cli.post.scene.axonometry import AS_BEST, Standpoint
 from dem_cli.post.scene.drawing import drawing_of
+from dem_cli.records.frames import Frame
 
 _LAST_MS = 1200  # the last one stays longer
 _DPI = 100

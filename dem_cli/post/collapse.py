@@ -11,10 +11,10 @@ from dem_cli.model.model import Model
 from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
 from dem_cli.output.reader import Results
-from dem_cli.output.record import STATES, Frame
 from dem_cli.post import frame_measures, style
 from dem_cli.post.scene.axonometry import AS_BEST, Standpoint
 from dem_cli.post.scene.drawing import Drawing, drawing_of
+from dem_cli.records.frames import STATES, Frame
 
 MECHANISM = "mechanism"  # of limit analysis
 _WIDEST_FORCE = 6.0  # points

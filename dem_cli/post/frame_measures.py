@@ -9,7 +9,7 @@ import numpy as np
 from dem_cli.geometry.rotation import angles_of, matrices, quaternions, rotation_vectors
 from dem_cli.model.model import Model
 from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
-from dem_cli.output.record import STATES, ContactRecord, Frame
+from dem_cli.records.frames import STATES, ContactRecord, Frame
 
 _VISIBLE = 0.06  # share of the size of the structure that a drawn displacement should reach
 _TRUE_FROM = 0.02  # displacements of this share are shown as they are

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from dem_cli.output.reader import Results
-from dem_cli.output.record import MONITOR_UNITS
 from dem_cli.output.series import BASE, HistorySeries
 from dem_cli.post import style
+from dem_cli.records.history_rows import MONITOR_UNITS
 
 _COLOURS = ("#1f5fa8", "#e08214", "#2a8c5b", "#8250a8", "#c51b7d", "#5aa0d8", "#a6761d", "#7c7c86")
 _MOST_POINTS = 4000  # per line: more are drawn as the lowest and highest of each stretch

@@ -9,11 +9,11 @@ from typing import Any
 
 from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
 from dem_cli.output.reader import Results
-from dem_cli.output.record import Frame
 from dem_cli.post import style
 from dem_cli.post.collapse import window
 from dem_cli.post.scene.axonometry import AS_BEST, Standpoint
 from dem_cli.post.scene.drawing import drawing_of
+from dem_cli.records.frames import Frame
 
 MOST_MODES = 12  # modes in one picture
 STAGE = "mode"  # of their frames, whose step is the number of the mode

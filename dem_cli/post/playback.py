@@ -8,7 +8,7 @@ import numpy as np
 
 from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.reader import Results
-from dem_cli.output.record import Frame
+from dem_cli.records.frames import Frame
 
 EACH = 0.08  # s that a frame stays where it has no time of its own
 SHORTEST = 0.02  # s: players slow down what is shorter

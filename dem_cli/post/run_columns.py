@@ -10,10 +10,10 @@ import numpy as np
 from dem_cli.errors import UsageError
 from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.reader import Results
-from dem_cli.output.record import MONITOR_UNITS
 from dem_cli.output.series import BASE, HistorySeries
 from dem_cli.post.capacity import capacity_axis
 from dem_cli.post.labels import KNOWN_QUANTITIES, Quantity, nearest, unknown
+from dem_cli.records.history_rows import MONITOR_UNITS
 
 SPECTRUM_DAMPING = 0.05  # of response spectra
 PERIOD, SPECTRAL = "period", "spectral acceleration"

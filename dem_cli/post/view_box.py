@@ -9,9 +9,9 @@ import numpy as np
 from dem_cli.model.model import Model
 from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
 from dem_cli.output.reader import Results
-from dem_cli.output.record import Frame
 from dem_cli.output.series import HistorySeries
 from dem_cli.post import frame_measures
+from dem_cli.records.frames import Frame
 
 _FALLEN = 0.8  # of the size of the structure: what falls farther is not shown
 _BELOW = 0.15  # of that: of what falls beside the ground, and below it

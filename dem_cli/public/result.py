@@ -19,10 +19,11 @@ from dem_cli.model.model import Model
 from dem_cli.output.layout import CONTACTS, JOINT_PLACES, JOINT_STATES, declared, units_of
 from dem_cli.output.paraview.vertices import placed_vertices
 from dem_cli.output.reader import Frames, Results, read
-from dem_cli.output.record import MONITOR_UNITS, OUTLINE, STATES, Frame
 from dem_cli.post.labels import KNOWN_QUANTITIES
 from dem_cli.post.run_columns import tables as columns_of
 from dem_cli.public.arrays import ArrayTable, MonitorHistory, NamedRecords
+from dem_cli.records.frames import OUTLINE, STATES, Frame
+from dem_cli.records.history_rows import MONITOR_UNITS
 
 
 class Result:

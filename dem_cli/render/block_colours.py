@@ -12,8 +12,8 @@ from dem_cli.geometry.rotation import angles_of
 from dem_cli.model.model import Model
 from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.reader import Results
-from dem_cli.output.record import Frame
 from dem_cli.post import frame_measures, style
+from dem_cli.records.frames import Frame
 from dem_cli.render.sheet import ColourBar
 
 _MAP, _FROM, _TO = "YlGnBu", 0.03, 0.8  # light where nothing happens; not so dark that edges get lost

@@ -8,9 +8,9 @@ import numpy as np
 
 from dem_cli.geometry.rotation import across
 from dem_cli.model.model import Model
-from dem_cli.output.record import STATES, ContactRecord, Frame
 from dem_cli.post import frame_measures
 from dem_cli.post.scene import joint_strokes
+from dem_cli.records.frames import STATES, ContactRecord, Frame
 from dem_cli.render.solids import lifted
 
 _HAIRLINE = 0.02  # joints open by less than this share of the largest displacement are faint

@@ -23,10 +23,10 @@ from dem_cli.errors import DemError, MissingExtra, OutputError, UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.reader import Frames, Results, read
-from dem_cli.output.record import Frame
 from dem_cli.post import collapse, frame_measures, style, view_box
 from dem_cli.post.playback import SHORTEST, Playback, playback
 from dem_cli.post.scene.axonometry import AS_BEST, Standpoint
+from dem_cli.records.frames import Frame
 from dem_cli.render import block_colours, movie
 from dem_cli.render.solids import lifted
 from dem_cli.render.view import view_of

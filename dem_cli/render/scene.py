@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dem_cli.model.model import Model
-from dem_cli.output.record import STATES, Frame
 from dem_cli.post import style
 from dem_cli.post.scene.axonometry import Axonometry
+from dem_cli.records.frames import STATES, Frame
 from dem_cli.render import marks, solids
 
 _STONES = ("#e6dac3", "#c3bfba", "#d9bfa3", "#cdd2cc", "#e8e2d6")  # by material

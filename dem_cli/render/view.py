@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.model.model import Model
-from dem_cli.output.record import Frame
 from dem_cli.post.scene.axonometry import Axonometry, Standpoint, axonometry, looks_right, refuse_in_plane
+from dem_cli.records.frames import Frame
 
 _PLANE = Axonometry(*np.eye(3))  # y is upwards
 _DIRECTIONS = {"front": (0.0, 0.0, 1.0), "3d": (-0.42, 0.34, 1.0)}  # in the plane: from the structure to the eye

@@ -9,7 +9,6 @@ import numpy as np
 
 from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.reader import Results
-from dem_cli.output.record import MONITOR_UNITS
 from dem_cli.output.reference import from_summary
 from dem_cli.output.series import BASE
 from dem_cli.post import style
@@ -17,6 +16,7 @@ from dem_cli.post.capacity import capacity_axis, of_frames, off_the_load, with_b
 from dem_cli.post.energy import across
 from dem_cli.post.fragility import has_curve
 from dem_cli.post.histories import curve, of_quantity, thinned
+from dem_cli.records.history_rows import MONITOR_UNITS
 from dem_cli.report.packed_arrays import pack
 
 Chart = dict[str, Any]

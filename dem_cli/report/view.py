@@ -16,11 +16,11 @@ from dem_cli.model.model import Model
 from dem_cli.output.layout import IN_SECONDS
 from dem_cli.output.paraview.vertices import in_space
 from dem_cli.output.reader import Results
-from dem_cli.output.record import STATES, ContactRecord, Frame
 from dem_cli.post import frame_measures
 from dem_cli.post import view_box as stage
 from dem_cli.post.scene import joint_strokes
 from dem_cli.post.scene.axonometry import axonometry, wide_side
+from dem_cli.records.frames import STATES, ContactRecord, Frame
 from dem_cli.render.chamfered import Surface, sharp
 from dem_cli.render.solids import prisms
 from dem_cli.report.packed_arrays import pack

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import stage
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation

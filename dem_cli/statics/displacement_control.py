@@ -23,7 +23,7 @@ import numpy as np
 from dem_cli.engine import measures
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import stage
 from dem_cli.statics.equilibrium import check_finite, limit_falls
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from dem_cli.engine.measures import free_falls
 from dem_cli.engine.rigid_joints import relieved
 from dem_cli.errors import SolverError
 from dem_cli.kernels import records as slot
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import stage
 from dem_cli.statics.failure_test import FailureTest, displaced
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from dem_cli.engine.budget import Budget
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.track import Track
 from dem_cli.kernels import records as slot
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import stage
 from dem_cli.statics.equilibrium import check_finite, relax, settle_or_fail
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ import numpy as np
 from dem_cli.contact.joints import only_points
 from dem_cli.errors import UsageError
 from dem_cli.model.scales import largest_structure
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import stage
 
 if TYPE_CHECKING:
     from dem_cli.engine.job import Job
@@ -95,6 +95,13 @@ class RigidLimits:
         return found
 
     @property
+    def _resolution(self) -> float:
+        """Width of the bracket over the failure load [-]."""
+        resolution = self.job.request.analysis.resolution
+        assert resolution is not None
+        return resolution
+
+    @property
     def bound(self) -> float | None:
         """Multiplier above which nothing is in equilibrium; None: not known, or there is none."""
         return self.associated.upper if self.associated is not None else None
@@ -134,7 +141,7 @@ class RigidLimits:
         from dem_cli.limit.path import trace
 
         settings, clock = self.job.settings, self.job.clock
-        plateau = min(settings.warm_start.flat * self.job.case.analysis.resolution, settings.limit.path.plateau)
+        plateau = min(settings.warm_start.flat * self._resolution, settings.limit.path.plateau)
         return trace(
             structure, friction, plateau,
             progress=lambda load, _: clock.progress("following the path to failure", load, 0.0, None),
@@ -173,7 +180,7 @@ class RigidLimits:
             problem, settings, lambda: problem.factorisations > most,
             lambda load, _: clock.progress("holding loads in implicit steps", load, 0.0, None),
         )  # fmt: skip
-        return history.search(bound, settings.narrow * self.job.case.analysis.resolution, small)
+        return history.search(bound, settings.narrow * self._resolution, small)
 
     @cached_property
     def largest(self) -> int:

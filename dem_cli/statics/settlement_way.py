@@ -12,7 +12,7 @@ from dem_cli.engine.budget import Budget
 from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import SavedState
 from dem_cli.kernels import records as slot
-from dem_cli.output.resume.stages import stage
+from dem_cli.records.ports import stage
 from dem_cli.statics.equilibrium import check_finite, settle_or_fail
 from dem_cli.statics.post_peak import soften_falls
 

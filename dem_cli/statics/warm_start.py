@@ -66,8 +66,8 @@ class CurveStart(NamedTuple):
 
 
 def find_start(job: Job, sim: Simulation, limits: RigidLimits) -> tuple[WarmStart | None, dict[str, Any]]:
-    """The start that the case asks for (None: gravity), and what summary.json says of it."""
-    wanted = job.case.analysis.start
+    """The start that is asked for (None: gravity), and what summary.json says of it."""
+    wanted = job.request.analysis.start
     kind = GRAVITY if wanted == "auto" else wanted
     report: dict[str, Any] = {"kind": kind, "chosen": "automatically" if wanted == "auto" else "by the case"}
     if kind != GRAVITY and limits.why_not is not None:
@@ -76,7 +76,7 @@ def find_start(job: Job, sim: Simulation, limits: RigidLimits) -> tuple[WarmStar
         report |= {"kind": GRAVITY, "note": "a state found elsewhere is of rigid joints, these have a stiffness"}
     if kind != GRAVITY and sim.links and (kind == LIMIT or limits.path is None):
         report |= {"kind": GRAVITY, "note": "a state found elsewhere knows no forces of these ties and bars"}
-    if kind != GRAVITY and getattr(job.case.analysis, "step", None) is not None:
+    if kind != GRAVITY and job.request.analysis.step is not None:
         report |= {"kind": GRAVITY, "note": "every step of the load is asked for"}
     if report["kind"] == GRAVITY:
         return None, report

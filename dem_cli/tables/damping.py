@@ -8,8 +8,8 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, Positive
+from dem_cli.records.requests import DEFAULT_FRACTION
 
-DEFAULT_FRACTION = 0.35  # thesis 6.1: best for the restitution of blocks with h/b from 2 to 5
 JOINTS = ("contact_fraction", "restitution", "rayleigh", "stiffness")  # each sets the dashpots: one of them
 
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, field_validator, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive
+
+if TYPE_CHECKING:
+    from dem_cli.motion.eurocode import TargetSpectrum
 
 Period = tuple[NonNegative, Positive]  # period [s], acceleration [m/s2]
 EC8_KEYS = ("soil", "ag")
@@ -46,3 +49,14 @@ class SpectrumTable(CaseModel):
             if not isinstance(self.spectrum, str) and getattr(self, key) is not None:
                 raise KeyProblem("not allowed beside a spectrum given as a list", key)
         return self
+
+    @property
+    def target(self) -> TargetSpectrum:
+        """The spectrum that it names."""
+        from dem_cli.motion.eurocode import eurocode, listed
+
+        if isinstance(self.spectrum, str):
+            assert self.soil is not None
+            assert self.ag is not None
+            return eurocode(self.spectrum, self.soil, self.ag, self.damping)
+        return listed(self.spectrum, self.damping)

@@ -14,7 +14,7 @@ from dem_cli.motion.eurocode import SOILS
 from dem_cli.motion.intensity_measures import fit
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.spectrum import response_spectrum
-from dem_cli.motion.synthetic import suite, target_of
+from dem_cli.motion.synthetic import suite
 from dem_cli.motion.table import ArtificialTable
 from dem_cli.post.spectra import MotionSuite, draw_motions, draw_spectra
 from studies.places import DOCS
@@ -37,7 +37,7 @@ def suites(count: int = SUITES) -> str:
         started = time.process_time()
         motions = [Motion(record) for record in suite(table, 1)]
         each = (time.process_time() - started) / len(motions)
-        found = [fit(motions[i : i + OF_SEVEN], target_of(table)) for i in range(0, len(motions), OF_SEVEN)]
+        found = [fit(motions[i : i + OF_SEVEN], table.target) for i in range(0, len(motions), OF_SEVEN)]
         ratios = np.concatenate([one.ratios for one in found])
         rows.append((
             kind, soil, f"{100 * damping:g} %", f"{sum(one.meets for one in found)} of {count}",
@@ -88,7 +88,7 @@ class MotionStudy(StudyRunner):
     def redraw(self) -> None:
         table = ArtificialTable(spectrum="EC8-1", soil="B", ag=2.0, count=OF_SEVEN)
         motions = [Motion(record, name=f"artificial {i}") for i, record in enumerate(suite(table, 1), 1)]
-        made = [MotionSuite(motions, target_of(table))]
+        made = [MotionSuite(motions, table.target)]
         draw_spectra(made, PAGE.with_name("motion_spectra.png"), "Suite of seven")
         draw_motions(made, PAGE.with_name("motion_records.png"), "Suite of seven")
 

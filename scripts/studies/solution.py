@@ -17,7 +17,7 @@ from dem_cli.case.reader import LoadedCase
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.model.model import Model
 from dem_cli.output.paraview.vertices import placed_vertices
-from dem_cli.output.record import Frame
+from dem_cli.records.frames import Frame
 from studies.observer import RunKeeper
 from studies.places import ROOT
 

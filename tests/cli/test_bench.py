@@ -8,6 +8,7 @@ import numba
 import pytest
 from click.testing import CliRunner
 
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.bench import joints, kernels, others, precision, registry, sweeps, time_histories
 from dem_cli.bench.cases import KNOWN_STRUCTURES
 from dem_cli.bench.spatial import sizes
@@ -58,8 +59,8 @@ def test_quick_measures_every_group(quick):
 def test_joint_models_are_valid(name):
     case, model = joints.with_joint(KNOWN_STRUCTURES[joints.QUICK_CASE], joints.VARIANTS[name], joints.OTHER).build()
     assert set(case.joints) == {"dry", "other"}
-    assert law_of(case).bonded  # as the other joint is
-    joint_properties(case, model)
+    assert law_of(solver_request(case)).bonded  # as the other joint is
+    joint_properties(solver_request(case), model)
 
 
 def test_compiled_code_stays_in_its_folder(quick):

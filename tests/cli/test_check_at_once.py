@@ -137,7 +137,7 @@ PREPARED = """
 import sys
 from dem_cli import api
 from dem_cli.analyses import time_history
-from dem_cli.motion.ground_motions import motions_of
+from dem_cli.assembly.ground_motions import motions_of
 
 print(motions_of(api.load_case(sys.argv[1]).case)[0].displacement(1.0))
 print("LOADED", sorted(n for n in ("scipy.signal", "scipy.optimize", "scipy.interpolate") if n in sys.modules))

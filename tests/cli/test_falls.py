@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 import dem_cli
 from dem_cli.cli.main import main
-from dem_cli.output.record import FALLS
+from dem_cli.records.statuses import FALLS
 
 BLOCK = """
 title = "a block beyond the edge"

@@ -9,9 +9,9 @@ import pytest
 from click.testing import CliRunner
 
 from dem_cli.api import load_case, make_case_model
+from dem_cli.assembly.ground_motions import motions_of
 from dem_cli.cli.main import main
 from dem_cli.cli.motion import draw_spectra_of_case
-from dem_cli.motion.ground_motions import motions_of
 
 CASE = """
 title = "Two drums"

@@ -21,8 +21,8 @@ from synthetic.solid_runs import solid_frames, solid_wall, write_solid_run
 from synthetic.tumbling import write_shaken_column
 
 from dem_cli.cli.main import main
-from dem_cli.output.record import STATES
 from dem_cli.output.store import ResultWriter
+from dem_cli.records.frames import STATES
 from dem_cli.report import facts
 from dem_cli.report.page import ASSETS, SCRIPTS, STYLE_SHEET, TEMPLATE, THREE, policy, script_json
 from dem_cli.report.view import turns, view
@@ -369,7 +369,7 @@ def test_what_counts_as_balanced_is_what_the_solver_asks_for():
 
 
 def test_colours_of_stages_and_lines_are_in_the_style_sheet():
-    from dem_cli.output.record import STAGES, STATES
+    from dem_cli.records.frames import STAGES, STATES
     from dem_cli.report import charts
 
     style = (ASSETS / "page.css").read_text(encoding="utf-8")

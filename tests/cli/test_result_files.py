@@ -19,7 +19,7 @@ from dem_cli.contact.drawn_joints import DrawnJoints
 from dem_cli.output import layout
 from dem_cli.output.layout import GROUPS
 from dem_cli.output.paraview.described_fields import STEP_FIELDS, VTK_FILES
-from dem_cli.output.record import STATES
+from dem_cli.records.frames import STATES
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "results.md").read_text(encoding="utf-8")
 COLUMN = """\

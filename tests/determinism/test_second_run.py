@@ -21,7 +21,7 @@ import dem_cli
 from dem_cli import api
 from dem_cli.analyses.solve import solve
 from dem_cli.engine.settings import DEFAULT
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 large, *cases = sys.argv[1:]
 tiles = replace(DEFAULT, detection=replace(DEFAULT.detection, tiled_from=1))

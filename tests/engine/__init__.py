@@ -13,6 +13,7 @@ import tomli_w
 from dem_cli.analyses import solve as solver
 from dem_cli.api import load_case
 from dem_cli.assembly.assemble import assembly
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.case.schema import Case
 from dem_cli.engine.kinematics import live_scale
 from dem_cli.engine.loops import compiled_advance
@@ -21,7 +22,10 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.simulation import Simulation
 from dem_cli.kernels import records as slot
 from dem_cli.model.model import Model
-from dem_cli.output.record import Frame, HistoryRow, Observer, Samples
+from dem_cli.records.frames import Frame
+from dem_cli.records.history_rows import HistoryRow, Samples
+from dem_cli.records.ports import Observer
+from dem_cli.records.requests import SolverRequest
 
 MU, DENSITY = 0.6, 2000.0
 
@@ -31,6 +35,10 @@ class Scene(NamedTuple):
 
     case: Case
     model: Model
+
+    @property
+    def request(self) -> SolverRequest:
+        return solver_request(self.case)
 
     def number(self, name: str) -> int:
         return self.model.block_ids.index(name)
@@ -114,8 +122,8 @@ def simulation(case: dict | Path, kinematics: str = "fixed", ratio: float = 1e6)
     tilting = made.case.analysis.kind == "pushover" and made.case.analysis.pattern == "tilt"
     return Simulation(
         made.model,
-        law_of(made.case),
-        joint_properties(made.case, made.model, ratio),
+        law_of(made.request),
+        joint_properties(made.request, made.model, ratio),
         kinematics,
         live_scale=1.0 if tilting else live_scale(made.model),
         tilting=tilting,

@@ -16,8 +16,8 @@ def solved(case, model: Model | None = None, overrides: Sequence[str] = (), **op
     """Limit analysis of a table or file, of another model of it where given; the associated load alone by default."""
     made = scene(case, *overrides)
     model = made.model if model is None else model
-    properties = joint_properties(made.case, model)
-    return limit_loads(model, properties, law_of(made.case), **{"associated_only": True} | options)
+    properties = joint_properties(made.request, model)
+    return limit_loads(model, properties, law_of(made.request), **{"associated_only": True} | options)
 
 
 def on_a_base(*blocks: dict, width: float = 4.0, **more) -> dict:

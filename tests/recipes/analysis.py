@@ -19,10 +19,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from dem_cli.engine.job import Job, Outcome
+from dem_cli.engine.job import Outcome
 from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.ensembles.case_job import CaseJob
 from dem_cli.model.model import Model
-from dem_cli.output.record import FALLS, Observer
+from dem_cli.records.ports import Observer
+from dem_cli.records.statuses import FALLS
 from dem_cli.statics.equilibrium import settle
 
 if TYPE_CHECKING:
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
     """Outcome with the weight of the free blocks [N]."""
-    job = Job.start(case, model, observer, settings)
+    job = CaseJob.of_case(case, model, observer, settings)
     sim = job.first_simulation()
     track = job.track(sim)
     status = "ok" if settle(sim, track, job.budget).state == "equilibrium" else FALLS
@@ -83,7 +85,7 @@ RECIPE = Recipe(
         "tests/house/test_imports.py::test_only_the_arrows_of_the_house[analyses.weight]", "tests/house/test_kinds.py",
     ),
     left_out=(
-        "dem_cli/output/record.py", "dem_cli/case/plausibility.py", "dem_cli/output/layout.py",
-        "dem_cli/output/resume/stages.py",
+        "dem_cli/records/frames.py", "dem_cli/case/plausibility.py", "dem_cli/output/layout.py",
+        "dem_cli/records/ports.py",
     ),
 )  # fmt: skip

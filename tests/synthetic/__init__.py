@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.model.model import Model
-from dem_cli.output.record import ContactRecord, Energy, Frame, HistoryRow
+from dem_cli.records.frames import ContactRecord, Frame
+from dem_cli.records.history_rows import Energy, HistoryRow
 
 LENGTH, HEIGHT, DEPTH, DENSITY = 0.040, 0.0175, 0.080, 2143.0
 

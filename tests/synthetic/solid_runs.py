@@ -10,8 +10,8 @@ from dem_cli.geometry.polyhedron import box, prism
 from dem_cli.geometry.rotation import matrices, quaternions, tangents_of
 from dem_cli.model.model import Model
 from dem_cli.output.paraview.vertices import rest_vertices
-from dem_cli.output.record import ContactRecord, Frame
 from dem_cli.output.store import ResultWriter
+from dem_cli.records.frames import ContactRecord, Frame
 from synthetic import history_rows, wall_summary
 from synthetic.spatial import spatial_model
 

@@ -70,7 +70,12 @@ def test_a_block_hangs_from_its_bar():
 def test_a_block_that_falls_into_its_bar_keeps_its_energy():
     """In time: bond slides and gives back what is elastic; all that is lost is in the books."""
     made = scene(hung(bond_strength=4e4))
-    sim = DynamicSimulation(made.model, law_of(made.case), joint_properties(made.case, made.model, 1e5), Damping())
+    sim = DynamicSimulation(
+        made.model,
+        law_of(made.request),
+        joint_properties(made.request, made.model, 1e5),
+        Damping(),
+    )
     sim.begin(1e-5)
     steps = 4000
     watch = sim.watch(np.zeros(0, np.int64), 1, steps)

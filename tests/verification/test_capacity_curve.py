@@ -223,7 +223,7 @@ def test_implicit_increments(dimension):
     blocks = [block("a", rectangle(0, 0, 1, 0.4)), block("b", rectangle(0.2, 0.4, 0.5, 1.4))]
     case = controlled(0.01, *blocks, friction=0.5, kn=1e9, kinematics="large")
     made = scene(extruded_tables(case) if dimension == 3 else case)
-    job = Job.start(made.case, made.model, Records())
+    job = Job.start(made.request, made.model, Records())
     sim = job.moving_simulation()
     stand(sim, job.budget)
     saved, curves = sim.save(), []
@@ -262,7 +262,7 @@ def test_an_implicit_increment_knows_the_sliding_load():
     """The block of `test_a_block_that_slides`: μ after elastic shear, whose energies are known."""
     kn, weight, far = 2e8, 0.2 * 2000.0 * 9.81, 0.002
     made = scene(controlled(far, block("b", rectangle(0, 0, 1, 0.2)), kn=kn, kinematics="large"))
-    sim = (job := Job.start(made.case, made.model, Records())).moving_simulation()
+    sim = (job := Job.start(made.request, made.model, Records())).moving_simulation()
     stand(sim, job.budget)
     control, curve = ImplicitControl(sim, job.budget, compliance(sim)[0]), CapacityCurve()
     trace(control, curve, far, 1e-4)

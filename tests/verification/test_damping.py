@@ -203,4 +203,4 @@ def test_restitution_of_a_structure_far_from_the_origin():
         stones = block("base", rectangle(x - 3, -1, x + 3, 0), fixed=True), block("b", rectangle(x, 0, x + 0.5, 1))
         analysis = {"kind": "time-history", "duration": 1.0}
         made = engine.scene(tables(*stones, damping={"restitution": "housner"}, analysis=analysis))
-        assert damping_of_start(made.case, made.model).words == "restitution of Housner, 0.7 for block 'b'"
+        assert damping_of_start(made.request, made.model).words == "restitution of Housner, 0.7 for block 'b'"

@@ -62,7 +62,8 @@ class Pushed:
 
     def __init__(self, case: dict, kinematics: str = "large") -> None:
         made = scene(case)
-        self.sim = Simulation(made.model, law_of(made.case), joint_properties(made.case, made.model, 1e6), kinematics,
+        properties = joint_properties(made.request, made.model, 1e6)
+        self.sim = Simulation(made.model, law_of(made.request), properties, kinematics,
                               live_scale=1.0, settings=CLOSE)  # fmt: skip
         self.block = made.number("b")
         budget = Budget(2_000_000)

@@ -16,7 +16,7 @@ from dem_cli.cli.words.fragility import fragility_rows
 from dem_cli.ensembles import shaken_run
 from dem_cli.ensembles.batch import Batch
 from dem_cli.errors import SolverError
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 BLOCK = Path(__file__).resolve().parents[2] / "cases" / "verification" / "rocking_pulse_falls.toml"
 EXACT = Block(0.5, 2.0)

@@ -179,7 +179,10 @@ def beam_on_posts(short: float, **analysis) -> dict:
 def test_a_beam_on_a_post_that_is_short_stands(share):
     """The gap closes by an angle of up to 0.0006; the posts turn over at their width over their height, 0.25."""
     case = beam_on_posts(share * CLOSES)
-    assert why_moving(*scene(case)) == f"a gap of {share * CLOSES:.3g} m between 'right' and 'beam' may close"
+    assert (
+        why_moving(scene(case).request, scene(case).model)
+        == f"a gap of {share * CLOSES:.3g} m between 'right' and 'beam' may close"
+    )
     summary, _ = solve(case)
     assert summary["status"] == "ok"
     assert summary["warnings"] == []
@@ -210,7 +213,7 @@ def test_what_holds_up_a_block_is_what_closes(share, small):
         case["block"].append(block("small", rectangle(3.0, 0.0, 3.05, 0.05)))
     made = assembly(scene(case).case)
     refused = problems(scene(case).case, made.model, made.blocks)
-    moving = why_moving(scene(case).case, made.model)
+    moving = why_moving(scene(case).request, made.model)
     assert bool(refused) == (share > 1.0)
     assert (moving is None) == (share > 1.0)
     found = gaps_of_start(made.model)

@@ -51,7 +51,7 @@ ALONG_PATHS = {"open06": 0.4664, "load00": 0.6733, "wall10": 0.4007, "butt02": 1
 def test_a_path_comes_to_its_first_plateau(name):
     """With increments that doubled the wall with an opening went on to 0.518."""
     made = scene(HISTORIES / f"{name}.toml")
-    limits = limit_loads(made.model, joint_properties(made.case, made.model), law_of(made.case))
+    limits = limit_loads(made.model, joint_properties(made.request, made.model), law_of(made.request))
     path = limits.non_associated
     assert path.finished
     first = path.load if path.rest is None else path.rest

@@ -11,6 +11,7 @@ from studies import storage
 from studies.imperfections import low_blocks, tables
 from studies.imperfections.study import STUDY
 
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.engine.properties import joint_properties, law_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -66,7 +67,7 @@ def test_the_first_motion_does_not_know_how_far_a_joint_is_open(block):
 def test_the_first_motion_is_the_limit_load_of_open_joints(block):
     """Sliding without dilation, by another method; 1 % below: the bracket, and loads that depend on the way to them."""
     case, model = low_blocks.build({"block": block, "height": -1e-3}, low_blocks.FIRST)
-    found = limit_loads(model, joint_properties(case, model), law_of(case))
+    found = limit_loads(model, joint_properties(solver_request(case), model), law_of(solver_request(case)))
     path = found.non_associated.load
     assert load(block, 1.0, way="first") == pytest.approx(path, rel=0.01)
     assert load(block, 1.0, way="first") <= path * 1.001

@@ -7,7 +7,7 @@ from casefiles import CASES
 
 from dem_cli import api
 from dem_cli.analyses.solve import solve
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 
 class ImpatientObserver(Observer):

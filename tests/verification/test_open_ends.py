@@ -61,7 +61,7 @@ def exact(degrees: float, friction: float) -> float:
 def test_a_ladder(degrees, friction):
     case, load = ladder(degrees, friction), exact(degrees, friction)
     made = scene(case)
-    limits = limit_loads(made.model, joint_properties(made.case, made.model), law_of(made.case))
+    limits = limit_loads(made.model, joint_properties(made.request, made.model), law_of(made.request))
     assert limits.associated.multiplier == pytest.approx(load, rel=1e-6)
     assert limits.non_associated.load == pytest.approx(load, rel=1e-4)
     for start in ("auto", "path"):

@@ -49,7 +49,7 @@ def profiled(number: int) -> dict:
 def started(case: dict | object, *overrides: str) -> tuple[Job, Simulation]:
     """At rest under its dead loads, as analyses do it."""
     made = scene(case, *overrides)
-    job = Job.start(made.case, made.model, Records())
+    job = Job.start(made.request, made.model, Records())
     sim = job.first_simulation()
     assert sim.kinematics == "large"
     assert stand(sim, job.budget).state == "equilibrium"
@@ -181,7 +181,7 @@ def test_what_round_off_leaves_too_soft_is_said():
     said = {}
     for number in (30, 300):
         made = scene(drums(number))
-        job = Job.start(made.case, made.model, Records())
+        job = Job.start(made.request, made.model, Records())
         said[number] = " ".join(job.outcome([job.first_simulation()], {"status": "ok"}).summary["warnings"])
     assert "as stiff as round-off allows" in said[300]
     assert said[30] == ""

@@ -23,7 +23,7 @@ from dem_cli.limit.cone import friction_of
 from dem_cli.limit.matrices import structure_of
 from dem_cli.limit.path import trace
 from dem_cli.links.link import FORCE, PLASTIC
-from dem_cli.output.record import FALLS
+from dem_cli.records.statuses import FALLS
 from dem_cli.statics.equilibrium import stand
 from dem_cli.statics.warm_start import WarmStart
 
@@ -192,7 +192,7 @@ def test_states_of_the_path_are_held_with_their_ties():
     made = scene(tied_stack(2))
     sim = simulation(tied_stack(2), "fixed")
     structure = structure_of(made.model, sim.joints)
-    path = trace(structure, friction_of(sim.joints, law_of(made.case)))
+    path = trace(structure, friction_of(sim.joints, law_of(made.request)))
     start = WarmStart("path", path.load, path.normal, path.shear, path.gaps, path.displacements, 0.0)
     start.put_into(sim)
     sim.advance(1, slot.HOLD_LOAD)
@@ -223,7 +223,12 @@ def test_frequencies_of_a_hung_block():
 
 def shaken(case: dict, dt: float) -> DynamicSimulation:
     made = scene(case)
-    sim = DynamicSimulation(made.model, law_of(made.case), joint_properties(made.case, made.model, 1e5), Damping())
+    sim = DynamicSimulation(
+        made.model,
+        law_of(made.request),
+        joint_properties(made.request, made.model, 1e5),
+        Damping(),
+    )
     sim.begin(dt)
     return sim
 

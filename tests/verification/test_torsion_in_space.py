@@ -48,7 +48,7 @@ def turned_by_a_couple(a: float, b: float, **more) -> dict:
 
 def bounds(case: dict) -> LimitLoads:
     made = scene(case)
-    return limit_loads(made.model, joint_properties(made.case, made.model), law_of(made.case))
+    return limit_loads(made.model, joint_properties(made.request, made.model), law_of(made.request))
 
 
 def middle(summary: dict) -> float:

@@ -11,13 +11,16 @@ from dem_cli.bench.timing import TimedTask
 
 def associated_job(known: KnownStructure) -> TimedTask:
     """The load by exact cones, its error against what is known of it, and how many contact points there are."""
+    from dem_cli.assembly.solver_request import solver_request
     from dem_cli.engine.properties import joint_properties, law_of
     from dem_cli.limit.analysis import limit_loads
 
     case, model = known.build()
 
     def run() -> dict[str, Any]:
-        found = limit_loads(model, joint_properties(case, model), law_of(case), associated_only=True)
+        found = limit_loads(
+            model, joint_properties(solver_request(case), model), law_of(solver_request(case)), associated_only=True
+        )
         load = found.associated.multiplier
         said = {"load": load, "error": statics_error(known, load), "points": len(found.associated.normal)}
         return said if load is not None else said | {"status": found.associated.status}

@@ -57,13 +57,14 @@ def _pushed(known: KnownStructure) -> TimedTask:
 
 def building(known: KnownStructure) -> tuple[int, int]:
     """The most bytes that it takes to build a model and its simulation, and how many contact points there are."""
+    from dem_cli.assembly.solver_request import solver_request
     from dem_cli.engine.properties import joint_properties, law_of
     from dem_cli.engine.simulation import Simulation
 
     tracemalloc.start()
     try:
         case, model = known.build()
-        sim = Simulation(model, law_of(case), joint_properties(case, model))
+        sim = Simulation(model, law_of(solver_request(case)), joint_properties(solver_request(case), model))
         _, most = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()

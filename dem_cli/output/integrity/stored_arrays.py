@@ -17,7 +17,8 @@ from dem_cli.errors import DamagedResults
 from dem_cli.input_limits import MOST_EXPANSION, SMALL_RESULTS
 from dem_cli.output.integrity.array_values import checked
 from dem_cli.output.layout import GROUPS, NAMES, NUMBERS, ONE_MORE, TRUTHS, WHOLE, Described, Group, declared
-from dem_cli.output.record import MONITOR_UNITS, STAGES, STATES
+from dem_cli.records.frames import STAGES, STATES
+from dem_cli.records.history_rows import MONITOR_UNITS
 
 KINDS = {NUMBERS: "f", WHOLE: "iu", TRUTHS: "b", NAMES: "OS"}  # of NumPy
 GROWING = ("frame", "row", "sample", "contact point")  # axes that a killed run may have left longer than it counted

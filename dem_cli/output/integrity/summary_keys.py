@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from dem_cli.errors import DamagedResults, dotted
-from dem_cli.output.record import MONITOR_UNITS
+from dem_cli.records.history_rows import MONITOR_UNITS
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Count = Annotated[int, Field(strict=True, ge=0)]

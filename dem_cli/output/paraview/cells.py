@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.model.model import Model
-from dem_cli.output.record import JointPlaces
+from dem_cli.records.frames import JointPlaces
 
 _VERTEX, _LINE, _POLY_LINE, _POLYGON, CONVEX_POINT_SET = 1, 3, 4, 7, 41
 _PYRAMIDS = {3: 10, 4: 14}  # cell types by the sides of the base: tetrahedron, pyramid

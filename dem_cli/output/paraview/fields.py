@@ -10,7 +10,7 @@ from dem_cli.model.model import Model
 from dem_cli.model.uniform_strain import components
 from dem_cli.output.block_stress import mean_stresses, principal_values
 from dem_cli.output.paraview.vertices import in_space
-from dem_cli.output.record import ContactRecord, Frame, FrameStack, JointPlaces, JointStates
+from dem_cli.records.frames import ContactRecord, Frame, FrameStack, JointPlaces, JointStates
 
 
 def block_fields(model: Model) -> dict[str, np.ndarray]:

@@ -30,7 +30,7 @@ from dem_cli.output.paraview.fields import (
 )
 from dem_cli.output.paraview.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.paraview.vtkhdf import GridSeries, PointSeries
-from dem_cli.output.record import ContactRecord, FrameStack, JointPlaces, JointStates, LinkPlaces
+from dem_cli.records.frames import ContactRecord, FrameStack, JointPlaces, JointStates, LinkPlaces
 
 BLOCKS, CONTACTS, JOINTS, LINKS = VTK_FILES
 

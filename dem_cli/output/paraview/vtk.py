@@ -18,7 +18,7 @@ from dem_cli.output.paraview.cells import cells_of, outlines
 from dem_cli.output.paraview.fields import block_fields, contact_fields, turning_fields
 from dem_cli.output.paraview.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
 from dem_cli.output.reader import Results
-from dem_cli.output.record import Frame
+from dem_cli.records.frames import Frame
 
 Fields = Mapping[str, np.ndarray]
 _OF_TRIANGLES = (".stl",)  # formats that know no other faces

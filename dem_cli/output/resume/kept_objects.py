@@ -12,7 +12,7 @@ from contextlib import suppress
 from typing import Any, Protocol
 
 from dem_cli.output.resume.kept_values import Damaged, packed, unpacked
-from dem_cli.output.resume.likeness import alike
+from dem_cli.records.likeness import alike
 
 _PLAIN = (type(None), bool, int, float, complex, str, bytes, tuple, frozenset)  # which others may share by chance
 _known: dict[type, bool] = {}  # which classes change

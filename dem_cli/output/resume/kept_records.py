@@ -42,10 +42,9 @@ _PLACES = {
     "links.tie": ("Ties",),
     "model.following_loads": ("FollowingLoads",),
     "model.model": ("Model",),
-    "output.record": (
-        "ContactRecord", "Energy", "Frame", "HistoryRow", "LinkPlaces", "LinkRecord", "RunRow", "Samples",
-    ),
     "output.resume.stages": ("_Checkpoint", "_Outcome"),
+    "records.frames": ("ContactRecord", "Frame", "LinkPlaces", "LinkRecord"),
+    "records.history_rows": ("Energy", "HistoryRow", "RunRow", "Samples"),
     "statics.displacement_control": ("CurvePoint",),
     "statics.equilibrium": ("Verdict",),
     "statics.failure_test": ("FailureTest",),

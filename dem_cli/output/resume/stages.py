@@ -1,42 +1,23 @@
-"""Stages of a run: pieces of work whose outcome is kept for `--resume`, and loops that may go on from the middle.
-
-A run is deterministic: begun again it goes the same way. So what is kept is small: of each finished stage what it
-returned and what it left of the objects that it changes, of the one under way a checkpoint now and then. A resumed run
-goes its way from the start, takes finished stages from what was kept, and works on where nothing was.
-
-    @stage
-    def settle(sim, budget): ...            # sim.stages keeps it; sim and budget are put back as it left them
-
-        looks = Looks()                     # an object with the few numbers of a loop
-        if not sim.stages.resumed(looks):
-            begin()                         # what comes before the loop
-        while not done(looks):
-            sim.stages.offer(looks)         # here the run may go on, from `sim`, `budget` and `looks`
-            work(looks)
-
-All that a stage changes are its arguments, or lasts in one of them (output/resume/kept_objects.py); what it tells the
-results is told again. A stage may have others inside: these are kept until it is finished, or offers to go on behind
-them.
-"""
+"""Keeper of the stages of a run (records/ports.py) in a folder, for `--resume`: checkpoints, and what was told."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from functools import partial, wraps
-from typing import TYPE_CHECKING, Any, NamedTuple, ParamSpec, TypeVar
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from dem_cli.errors import SolverError
 from dem_cli.interrupts import asked
 from dem_cli.output.resume.kept_objects import Changing, all_changing, check_like, decoded, encoded, put_back
 from dem_cli.output.resume.kept_values import Damaged, NotKept
+from dem_cli.records.ports import Stages
 
 if TYPE_CHECKING:
     from dem_cli.output.resume.checkpoints import Checkpoints
 
 _SAY_EVERY = 0.2  # s between words that work goes on
 Found = TypeVar("Found")
-Given = ParamSpec("Given")
 _UNDER_WAY, _INSIDE = "+", "-"  # in names: a checkpoint of a stage; a stage inside another one
 
 
@@ -49,41 +30,6 @@ class Keeping(NamedTuple):
 
 
 DEFAULT_KEEPING = Keeping()
-
-
-class Stages:
-    """Stages of a run of which nothing is kept; all of them are done."""
-
-    before = 0.0  # s of work before this run, whose stages it goes on from
-
-    def done(self, name: str, arguments: tuple[Any, ...], work: Callable[[], Found]) -> Found:
-        """What a stage gives: by work, or as it was kept."""
-        return work()
-
-    def resumed(self, loop: Any = None) -> bool:
-        """Whether the stage under way goes on from a checkpoint: then all it changes and its loop are as they were."""
-        return False
-
-    def offer(self, loop: Any = None) -> None:
-        """The stage under way may go on from here; loop: an object with all that it needs besides what it changes."""
-
-    def __deepcopy__(self, known: dict[int, Any]) -> Stages:
-        return self
-
-
-NOTHING_KEPT = Stages()
-
-
-def stage(work: Callable[Given, Found]) -> Callable[Given, Found]:
-    """A function as a stage of the run of its first argument: a simulation, or what has one as `sim`."""
-
-    @wraps(work)
-    def kept(*arguments: Given.args, **named: Given.kwargs) -> Found:
-        first: Any = arguments[0]
-        stages: Stages = getattr(first, "sim", first).stages
-        return stages.done(work.__qualname__, (*arguments, *named.values()), partial(work, *arguments, **named))
-
-    return kept
 
 
 class _UnderWay:

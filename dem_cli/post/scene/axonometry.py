@@ -12,7 +12,7 @@ import numpy as np
 from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.paraview.vertices import rest_vertices
-from dem_cli.output.record import Frame
+from dem_cli.records.frames import Frame
 
 AZIMUTH_ASIDE, ELEVATION = 32.0, 22.0  # degrees: from the middle of the wide side, and above the ground
 _STILL = 1e-12  # of the size of the structure: who moves less does not move

@@ -8,10 +8,10 @@ from typing import Any, Protocol
 import numpy as np
 
 from dem_cli.model.model import Model
-from dem_cli.output.record import Frame
 from dem_cli.post.scene.axonometry import AS_BEST, Standpoint, axonometry, refuse_in_plane
 from dem_cli.post.scene.plane_drawing import PlaneDrawing
 from dem_cli.post.scene.space_drawing import SpaceDrawing
+from dem_cli.records.frames import Frame
 
 
 class Drawing(Protocol):

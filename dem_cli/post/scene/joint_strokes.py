@@ -11,7 +11,7 @@ import numpy as np
 
 from dem_cli.geometry.polygon import following
 from dem_cli.geometry.rotation import tangents_of
-from dem_cli.output.record import STATES, ContactRecord
+from dem_cli.records.frames import STATES, ContactRecord
 
 _INNER = 1e-3  # of the reach of its joint: a point so close to the middle is none of its corners
 

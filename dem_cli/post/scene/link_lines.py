@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.output.record import Frame
 from dem_cli.post import style
+from dem_cli.records.frames import Frame
 
 THICKEST, THINNEST = 4.0, 1.1  # points: where the force is largest, and where there is none
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from dem_cli.model.model import Model
 from dem_cli.output.paraview.vertices import rest_vertices
-from dem_cli.output.record import STATES, Frame
 from dem_cli.post import style
 from dem_cli.post.scene.joint_strokes import strokes
 from dem_cli.post.scene.link_lines import draw_lines
+from dem_cli.records.frames import STATES, Frame
 
 
 class PlaneDrawing:

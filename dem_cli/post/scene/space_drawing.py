@@ -9,13 +9,13 @@ import numpy as np
 
 from dem_cli.model.model import Model
 from dem_cli.output.paraview.vertices import rest_vertices
-from dem_cli.output.record import STATES, Frame
 from dem_cli.post import style
 from dem_cli.post.scene.axonometry import Axonometry, looks_right
 from dem_cli.post.scene.hidden_surfaces import NOTHING, SeenSurface, Window, seen_surface, window_of
 from dem_cli.post.scene.joint_strokes import visible_strokes
 from dem_cli.post.scene.link_lines import draw_lines
 from dem_cli.post.scene.plane_drawing import joint_width, state_colour
+from dem_cli.records.frames import STATES, Frame
 
 _FINEST = 1800  # pixels along the longer side of a picture
 _LIGHT = (0.14, 0.20, 0.06)  # to where the wide side looks, upwards, to the reader: how it changes the colour of a face

@@ -8,9 +8,10 @@ from typing import Any
 
 from dem_cli import api
 from dem_cli.analyses.solve import solve
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.limit.analysis import LEAST, LOWER, limit_loads
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 from studies.places import ROOT
 
 KEPT = (
@@ -22,9 +23,9 @@ KEPT = (
 def measure(file: Path) -> dict[str, Any]:
     """All loads of a case; seconds are of CPU."""
     found = api.load_case(file, ["analysis.follow=0.0", "output.frames=0"])
-    case, model, law = found.case, api.build_model(found), law_of(found.case)
+    case, model, law = found.case, api.build_model(found), law_of(solver_request(found.case))
     begun = time.process_time()
-    loads = limit_loads(model, joint_properties(case, model), law, bounds=bounds_of(case))
+    loads = limit_loads(model, joint_properties(solver_request(case), model), law, bounds=bounds_of(case))
     seconds, said = time.process_time() - begun, loads.summary()
     summary = solve(case, model, Observer()).summary
     return {

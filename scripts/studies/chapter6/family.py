@@ -10,6 +10,7 @@ from reference import results
 from scipy.optimize import brentq
 
 from dem_cli import api
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.bench.table import percent
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.limit.analysis import limit_loads
@@ -50,7 +51,12 @@ def limit(*more: str) -> float:
     """Failure load by limit analysis, joints that dilate as they slide."""
     loaded = from_file(CASES / "validation" / "arch_8_static.toml", *more)
     model = api.build_model(loaded)
-    found = limit_loads(model, joint_properties(loaded.case, model), law_of(loaded.case), associated_only=True)
+    found = limit_loads(
+        model,
+        joint_properties(solver_request(loaded.case), model),
+        law_of(solver_request(loaded.case)),
+        associated_only=True,
+    )
     return found.associated.multiplier
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from dem_cli import api
-from dem_cli.motion.ground_motions import motions_of
+from dem_cli.assembly.ground_motions import motions_of
 from dem_cli.post import style
 from studies.chapter6.arch import UNIT
 from studies.chapter6.shaken_case import ShakenCase, draw_blocks, run

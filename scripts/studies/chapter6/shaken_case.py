@@ -12,8 +12,8 @@ from dem_cli import api
 from dem_cli.analyses.solve import solve as solve_model
 from dem_cli.errors import SolverError
 from dem_cli.output.paraview import vertices
-from dem_cli.output.record import Frame
 from dem_cli.post import style
+from dem_cli.records.frames import Frame
 from studies.observer import RunKeeper
 from studies.places import CASES
 from studies.solution import command_of, from_file

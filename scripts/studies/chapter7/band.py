@@ -10,8 +10,8 @@ from reference import results
 
 from dem_cli.contact.drawn_joints import DrawnJoints
 from dem_cli.model.model import Model
-from dem_cli.output.record import Frame
 from dem_cli.post import style
+from dem_cli.records.frames import Frame
 from studies.chapter7.walls import FACE, JOINT
 from studies.places import CASES
 from studies.solution import bracket_of, command_of, corners_of, from_file, solve

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli import api
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.case.reader import LoadedCase
 from dem_cli.contact.compatibility import free_columns, relative_motion, strain_motion
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
@@ -39,7 +40,7 @@ def compliance(loaded: LoadedCase) -> float:
     from scipy.sparse.linalg import spsolve
 
     model = api.build_model(loaded)
-    properties, bodies = joint_properties(loaded.case, model), bodies_at_rest(model)
+    properties, bodies = joint_properties(solver_request(loaded.case), model), bodies_at_rest(model)
     joints = joints_of_start(model, bodies, properties, smallest_edge(model)).joints
     rows, n_dof = relative_motion(joints, 2), model.dead_loads.shape[1]
     columns, total = free_columns(model, joints), n_dof * int((~model.fixed).sum())

@@ -6,6 +6,7 @@ import time
 from typing import Any
 
 from dem_cli import api
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.bench.table import percent
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.simulation import Simulation
@@ -40,7 +41,9 @@ def _costs(way: str) -> dict[str, float]:
     loaded = from_file(WALL, *stones(way))
     model, found = api.build_model(loaded), {}
     for kinematics in ("fixed", "large"):
-        sim = Simulation(model, law_of(loaded.case), joint_properties(loaded.case, model), kinematics)
+        sim = Simulation(
+            model, law_of(solver_request(loaded.case)), joint_properties(solver_request(loaded.case), model), kinematics
+        )
         sim.set_load(0.0)
         sim.use_combined_damping()
         sim.advance(500, HOLD_LOAD)

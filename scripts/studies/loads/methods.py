@@ -12,6 +12,7 @@ import numpy as np
 
 from dem_cli import api
 from dem_cli.analyses.solve import solve
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.case.schema import Case
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.laws.envelope import frictional
@@ -22,7 +23,7 @@ from dem_cli.limit.cone import friction_of
 from dem_cli.limit.matrices import Structure
 from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 # The fine path. Where joints slide in another order, another load is reached: increments must be small enough for it to
 # settle, and end only where the load grows next to nothing.
@@ -67,7 +68,7 @@ def measure(file: Path, overrides: Sequence[str] = (), default: bool = True) -> 
     default  also DEM with the start that the program chooses itself
     """
     case, model = loaded(file, overrides)
-    properties, law = joint_properties(case, model), law_of(case)
+    properties, law = joint_properties(solver_request(case), model), law_of(solver_request(case))
     structure = start_structure(model, properties)
     friction = friction_of(structure.joints, law)
     bound, seconds = timed(lambda: limit_load(structure, frictional(friction)))

@@ -12,8 +12,8 @@ from dem_cli import api
 from dem_cli.analyses.solve import solve
 from dem_cli.contact.drawn_joints import DrawnJoints
 from dem_cli.model.model import Model
-from dem_cli.output.record import Frame
 from dem_cli.post import style
+from dem_cli.records.frames import Frame
 from studies.observer import RunKeeper
 from studies.places import CASES
 from studies.template import minus, table

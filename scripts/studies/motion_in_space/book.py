@@ -13,8 +13,10 @@ from dem_cli import api
 from dem_cli.analyses.solve import solve
 from dem_cli.case.reader import LoadedCase
 from dem_cli.model.model import Model
-from dem_cli.output.record import Energy, Frame, HistoryRow, Observer, Samples
 from dem_cli.pipeline.execution import Destination, execute
+from dem_cli.records.frames import Frame
+from dem_cli.records.history_rows import Energy, HistoryRow, Samples
+from dem_cli.records.ports import Observer
 from studies.observer import RunKeeper
 from studies.solution import from_tables
 

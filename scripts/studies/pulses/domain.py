@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from dem_cli.api import build_model
+from dem_cli.assembly.ground_motions import suites_of
 from dem_cli.ensembles.shaken_run import RestedStructure
 from dem_cli.ensembles.variants import Variant
-from dem_cli.motion.ground_motions import suites_of
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.pulses import impulse
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 from studies.bisection import bisect_ratio
 from studies.places import CASES
 from studies.rocking.single_block import solve

@@ -8,13 +8,14 @@ from typing import Any
 
 from dem_cli import api
 from dem_cli.analyses.solve import solve
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.case.schema import Case
 from dem_cli.engine.kinematics import why_moving
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.errors import CaseError, UsageError
 from dem_cli.limit.analysis import limit_loads
 from dem_cli.model.model import Model
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 from studies.solution import from_file, from_tables
 from studies.space.by_hand import ByHand
 from studies.space.twins import twin
@@ -60,7 +61,7 @@ def dem(case: Case, model: Model) -> dict[str, Any]:
 def limits(case: Case, model: Model) -> dict[str, Any]:
     """What limit analysis says."""
     try:
-        said = limit_loads(model, joint_properties(case, model), law_of(case)).summary()
+        said = limit_loads(model, joint_properties(solver_request(case), model), law_of(solver_request(case))).summary()
     except UsageError as error:
         return {"path": None, "path_status": str(error), "associated": None}
     path = said.get("non_associated")
@@ -95,6 +96,6 @@ def _has_a_twin(case: Case, model: Model) -> bool:
     ):
         return False
     try:
-        return why_moving(case, model) is None
+        return why_moving(solver_request(case), model) is None
     except CaseError:
         return False

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.engine.fictitious_masses import fictitious_masses
 from dem_cli.engine.kinematics import live_scale
 from dem_cli.engine.loops import compiled_advance
@@ -26,8 +27,8 @@ AXIS_REST, AXIS_RELAX = "a million steps at rest", "time step of a relaxation"
 def simulation(scene: StressScene, kinematics: str, settings: Settings = DEFAULT) -> Simulation:
     """As an analysis makes it."""
     case, model, _ = scene.build()
-    properties = joint_properties(case, model)
-    return Simulation(model, law_of(case), properties, kinematics, live_scale(model), settings=settings)
+    properties = joint_properties(solver_request(case), model)
+    return Simulation(model, law_of(solver_request(case)), properties, kinematics, live_scale(model), settings=settings)
 
 
 def crate() -> StressScene:

@@ -53,7 +53,7 @@ def test_blocks_are_cut_at_mid_length(dimension):
 
 def test_the_joint_is_that_of_the_stone_within_it_and_of_the_materials_elsewhere():
     made = scene(wall())
-    properties = joint_properties(made.case, made.model)
+    properties = joint_properties(made.request, made.model)
     pairs = np.array([[made.model.numbers[name] for name in pair] for pair in
                       (("w-1-1/a", "w-1-1/b"), ("w-1-1/b", "w-1-2/a"), ("w-base", "w-1-1/a"))])  # fmt: skip
     assert [properties.names[k] for k in properties.between(made.model, pairs)] == ["glue", "dry", "dry"]
@@ -65,8 +65,8 @@ def test_stones_that_do_not_crack_carry_what_whole_ones_do(dimension):
     loads = []
     for crack in (None, "glue", {"joint": "glue", "at": [0.2, 0.5]}):
         made = scene(wall(crack, dimension))
-        properties = joint_properties(made.case, made.model)
-        found = limit_loads(made.model, properties, law_of(made.case), associated_only=True)
+        properties = joint_properties(made.request, made.model)
+        found = limit_loads(made.model, properties, law_of(made.request), associated_only=True)
         loads.append(found.associated.multiplier)
     assert loads[1:] == pytest.approx([loads[0]] * 2, rel=1e-5)
 

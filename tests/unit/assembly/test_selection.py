@@ -7,11 +7,12 @@ import pytest
 
 from dem_cli.analyses.settlement import SupportMovement
 from dem_cli.assembly.assemble import assembly
+from dem_cli.assembly.ground_motions import motions_of
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.case.selection import Selection
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.engine.monitors import Monitors
 from dem_cli.errors import CaseError
-from dem_cli.motion.ground_motions import motions_of
 
 LEFT = {"kind": "wall", "id": "left", "block": [1.0, 0.5], "courses": 4, "blocks_per_course": 2}
 RIGHT = {"kind": "wall", "id": "right", "block": [1.0, 0.5], "courses": 2, "blocks_per_course": 2, "origin": [5.0, 0.0]}
@@ -130,7 +131,7 @@ def test_a_monitor_of_a_group_is_the_mean_by_mass(case_of):
         {"block": "heavy"},
     ]
     case = case_of(block=[heavy, light, floor], monitor=tables)
-    monitors = Monitors(case, assembly(case).model)
+    monitors = Monitors(solver_request(case).monitors, assembly(case).model)
     assert [monitors.model.block_ids[i] for i in monitors.watched] == ["heavy", "light"]
     samples = np.zeros((1, 2, 3, 3))
     samples[0, :, 0, :2] = monitors.model.centroids[monitors.watched]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.bench import precision
 from dem_cli.bench.cases import KNOWN_STRUCTURES, solve
 from dem_cli.bench.points import points_per_joint, refined, shares
@@ -45,7 +46,7 @@ def test_places_of_points(layout, places):
 
 def test_refined_joints_have_the_same_stiffness_and_ends():
     case, model = KNOWN_STRUCTURES["T21 μ 0.6"].build()
-    sim = Simulation(model, law_of(case), joint_properties(case, model))
+    sim = Simulation(model, law_of(solver_request(case)), joint_properties(solver_request(case), model))
     joints, contacts = refined(sim.joints, sim.contacts, shares("5"))
     n = len(sim.joints.blocks)
     assert len(joints.kn) == len(contacts.gaps) == 5 * n == joints.starts[-1]

@@ -7,7 +7,7 @@ import pytest
 from oracle.housner import Block, rock
 
 from dem_cli.bench.time_histories import LANDINGS, FirstMonitor, distance, landing_error
-from dem_cli.output.record import Samples
+from dem_cli.records.history_rows import Samples
 
 
 def history(times: np.ndarray, values: np.ndarray) -> FirstMonitor:

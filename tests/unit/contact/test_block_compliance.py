@@ -44,7 +44,7 @@ def moved(case, force):
     made = scene(case)
     model = made.model
     joints = joints_of_start(
-        model, bodies_at_rest(model), joint_properties(made.case, model), smallest_edge(model)
+        model, bodies_at_rest(model), joint_properties(made.request, model), smallest_edge(model)
     ).joints
     motion = compatibility(model, joints).toarray()
     stiffness = np.column_stack([joints.kn, *[joints.ks] * (model.dimension - 1)]).ravel()
@@ -99,8 +99,8 @@ def test_blocks_that_do_not_bend_beside_stiff_joints_say_so(deformation, ratio, 
     """By kn h/E; at 0.44 a column that bends is 27 % too stiff."""
     joint = {"friction": 0.6, "kn": ratio * E / H}
     made = scene(column(stone=STONE | {"deformation": deformation}, joint=joint))
-    sim = Simulation(made.model, law_of(made.case), joint_properties(made.case, made.model), "fixed")
-    found = unbending(made.case, sim)
+    sim = Simulation(made.model, law_of(made.request), joint_properties(made.request, made.model), "fixed")
+    found = unbending(made.request, sim)
     assert len(found) == bool(said)
     assert all(f"deform {said} times as much as joint 'dry'" in text and "do not bend" in text for text in found)
 
@@ -112,7 +112,7 @@ def test_fixed_blocks_are_supports_whatever_their_material():
 
 def test_joints_of_two_kinds_of_blocks():
     made = scene(column(joint={"friction": 0.6, "kn": KN}))
-    properties, model = joint_properties(made.case, made.model), made.model
+    properties, model = joint_properties(made.request, made.model), made.model
     joints = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model)).joints
     kn = np.add.reduceat(joints.kn, joints.starts[:-1]) / A
     below = joints.blocks.min(axis=1)
@@ -185,7 +185,7 @@ def displacement(*overrides):
     made = scene(CASES / "validation" / "shear_wall_sw100.toml", *overrides)
     model = made.model
     built = joints_of_start(
-        model, bodies_at_rest(model), joint_properties(made.case, model), smallest_edge(model)
+        model, bodies_at_rest(model), joint_properties(made.request, model), smallest_edge(model)
     ).joints
     motion = compatibility(model, built)
     stiffness = diags(np.column_stack([built.kn, built.ks]).ravel())

@@ -65,7 +65,7 @@ def test_a_core_of_rubble_keeps_its_geometry():
             "analysis": {"kind": "pushover", "direction": [0.0, 1.0, 0.0]},
         }
     )
-    assert why_moving(made.case, made.model) is None
+    assert why_moving(made.request, made.model) is None
 
 
 WALL = {

@@ -10,7 +10,7 @@ from synthetic import boxes_model, no_contacts
 from dem_cli.contact.drawn_joints import OPEN, SLIDING, STICKING, DrawnJoints
 from dem_cli.geometry.rotation import turned_as_one
 from dem_cli.model.model import Model
-from dem_cli.output.record import ContactRecord
+from dem_cli.records.frames import ContactRecord
 
 B, H, DEPTH = 0.5, 2.0, 0.080
 

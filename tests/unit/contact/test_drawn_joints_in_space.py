@@ -13,7 +13,7 @@ from dem_cli.contact.drawn_joints import OPEN, SLIDING, DrawnJoints
 from dem_cli.contact.gaps import gaps_of_start, wedges_of_start
 from dem_cli.geometry.polyhedron import Polyhedron, box, hull
 from dem_cli.geometry.rotation import matrices, quaternions, unturned
-from dem_cli.output.record import ContactRecord
+from dem_cli.records.frames import ContactRecord
 
 BASE = box([-2.0, -2.0, -0.5], [2.0, 2.0, 0.0])
 B, D = 0.5, 0.8

@@ -52,7 +52,7 @@ def test_a_plane_goes_through_the_closest_point():
     made = scene(tables(block("base", rectangle(-1, -1, 2, 0), fixed=True), block("b", tilted)))
     model = made.model
     bodies = bodies_at_rest(model)
-    built = joints_of_start(model, bodies, joint_properties(made.case, model, 1e6), smallest_edge(model))
+    built = joints_of_start(model, bodies, joint_properties(made.request, model, 1e6), smallest_edge(model))
     joints, gaps = built.joints, built.contacts.gaps
     assert isinstance(joints, FixedJoints)
     closest = int(gaps.argmin())
@@ -66,7 +66,9 @@ def test_a_plane_goes_through_the_closest_point():
 def test_joints_of_the_start_take_less_memory_than_their_points_one_by_one():
     made = scene(tables(*running_wall(4, 5)))
     model = made.model
-    built = joints_of_start(model, bodies_at_rest(model), joint_properties(made.case, model, 1e6), smallest_edge(model))
+    built = joints_of_start(
+        model, bodies_at_rest(model), joint_properties(made.request, model, 1e6), smallest_edge(model)
+    )
     joints = built.joints
     one_by_one = joints.frames.nbytes + joints.levers.nbytes + joints.points.nbytes
     assert joints.axes.nbytes + joints.anchors.nbytes + joints.arms.nbytes + joints.places.nbytes < 0.6 * one_by_one

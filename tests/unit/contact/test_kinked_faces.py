@@ -9,6 +9,7 @@ from synthetic.spatial_case import spatial_case
 from synthetic.spatial_joints import KN, one_joint, start_joints
 
 from dem_cli.assembly.assemble import assembly
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.assembly.validate import warnings
 from dem_cli.contact import spatial
 from dem_cli.contact.assemble import build_joints
@@ -106,7 +107,7 @@ def test_only_faces_that_lie_on_each_other_are_bonded(lean):
     stone = [[0.0, 0.0], [1.0, lean], [1.0, 1.0], [0.0, 1.0]]
     joints = {"dry": BOND | {"kn": 1e9, "ks": 1e9}}
     case, model = drawn(prism("ground", ground, fixed=True), prism("stone", stone), joints=joints)
-    properties, law = joint_properties(case, model), law_of(case)
+    properties, law = joint_properties(solver_request(case), model), law_of(solver_request(case))
     structure = start_structure(model, properties, law)
     found = envelope_of(structure.joints, law, bonds=structure.bonds)
     built = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model), law.n_memory(3))

@@ -28,7 +28,7 @@ def case(dimension: int = 2, **joint) -> dict:
 
 def doubts(dimension: int = 2, **joint) -> list[str]:
     made = scene(case(dimension, **joint))
-    return bending_doubts(made.case, made.model)
+    return bending_doubts(made.request, made.model)
 
 
 @pytest.mark.parametrize(("dimension", "points"), [(2, 5), (3, 3)])
@@ -48,7 +48,7 @@ def test_nothing_is_said_of_stiff_joints_and_of_points_that_are_given(joint):
     made = case(**joint)
     made["joints"]["dry"] = {key: value for key, value in made["joints"]["dry"].items() if value is not None}
     found = scene(made)
-    assert bending_doubts(found.case, found.model) == []
+    assert bending_doubts(found.request, found.model) == []
 
 
 def test_a_run_says_it():

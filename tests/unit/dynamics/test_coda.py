@@ -14,7 +14,7 @@ from dem_cli.dynamics.coda import Swings, undecided
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.errors import SolverError
 from dem_cli.output.ending import ending_words, last_words
-from dem_cli.output.record import MOVES, ROCKS, STOOD
+from dem_cli.records.statuses import MOVES, ROCKS, STOOD
 
 WIDTH, HEIGHT, FREQUENCY = 1.0, 6.0, 0.8
 GROUND = block("ground", rectangle(-30.0, -1.0, 30.0, 0.0), fixed=True)

@@ -33,7 +33,12 @@ def settling(vertices, damping: Damping = UNDAMPED) -> DynamicSimulation:
     """A block without weight, far from its support, before the motion begins."""
     block = {"id": "block", "vertices": [list(map(float, corner)) for corner in vertices]}
     made = scene(tables(BASE, block, dimension=3, gravity=0.0, analysis={"kind": "gravity"}))
-    return DynamicSimulation(made.model, law_of(made.case), joint_properties(made.case, made.model, 1e5), damping)
+    return DynamicSimulation(
+        made.model,
+        law_of(made.request),
+        joint_properties(made.request, made.model, 1e5),
+        damping,
+    )
 
 
 def flying(vertices, dt: float, damping: Damping = UNDAMPED) -> DynamicSimulation:

@@ -90,7 +90,10 @@ def test_rocking_stiffness_in_any_plan(angle):
     """ε = 2 ρ g (h/b)²/kn of the narrower side b, however the block lies in plan."""
     made = scene(case(Rotation.from_rotvec([0.0, 0.0, angle])))
     joints = joints_of_start(
-        made.model, bodies_at_rest(made.model), joint_properties(made.case, made.model, 1e6), smallest_edge(made.model)
+        made.model,
+        bodies_at_rest(made.model),
+        joint_properties(made.request, made.model, 1e6),
+        smallest_edge(made.model),
     ).joints
     sways = 2.0 * 2000.0 * 9.81 * (1.5 / 0.5) ** 2 / 1e9
     assert turn_sideways(made.model, joints) == pytest.approx(sways, rel=1e-6)

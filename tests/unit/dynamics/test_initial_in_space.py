@@ -31,10 +31,15 @@ def column(*initial: dict) -> tuple[DynamicSimulation, np.ndarray]:
 
 def started(case: dict) -> tuple[DynamicSimulation, np.ndarray]:
     made = scene(case)
-    sim = DynamicSimulation(made.model, law_of(made.case), joint_properties(made.case, made.model, 1e5), Damping())
+    sim = DynamicSimulation(
+        made.model,
+        law_of(made.request),
+        joint_properties(made.request, made.model, 1e5),
+        Damping(),
+    )
     sim.begin(1e-4)
     before = sim.bodies.corners + sim.origin
-    set_initial(made.case, sim)
+    set_initial(made.request.initial, sim)
     return sim, before
 
 

@@ -8,12 +8,13 @@ import pytest
 from engine import Records, block, rectangle, tables
 from scipy.integrate import solve_ivp
 
+from dem_cli.assembly.ground_motions import motions_of
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.dynamics.ground import GroundMotion
 from dem_cli.dynamics.history import TimeHistory
 from dem_cli.engine.job import Job
 from dem_cli.ensembles.shaken_run import RestedStructure
 from dem_cli.ensembles.variants import Variant
-from dem_cli.motion.ground_motions import motions_of
 from dem_cli.output.store import ResultWriter
 
 HIGH, HIGH_AT, LOW, LOW_AT = 0, 1, 2, 3
@@ -127,7 +128,7 @@ def test_one_of_many_runs_has_the_same():
     """To the bit: what `repeats` and fragilities read is what a time history reads."""
     made, observer = engine.scene(shaken(2.2)), Records()
     history = TimeHistory(
-        Job.start(made.case, made.model, observer), GroundMotion(motions_of(made.case), made.model)
+        Job.start(made.request, made.model, observer), GroundMotion(motions_of(made.case), made.model)
     )  # fmt: skip
     history.run()
     rested = RestedStructure(Variant(made.case, made.model, 0), motions_of(made.case), Records())
@@ -147,11 +148,11 @@ def test_tall_structures_are_followed_longer():
     from dem_cli.dynamics.coda import longest_coda
 
     made = engine.scene(shaken(2.2))
-    assert longest_coda(made.case, made.model) == pytest.approx(20.0 * np.sqrt(3.0 / 9.81))
+    assert longest_coda(made.request, made.model) == pytest.approx(20.0 * np.sqrt(3.0 / 9.81))
     low = engine.scene(shaken(2.2) | {"block": [block("b", rectangle(0.0, 0.0, 1.0, 0.5))], "monitor": []})
-    assert longest_coda(low.case, low.model) == 5.0
+    assert longest_coda(solver_request(low.case), low.model) == 5.0
     given = engine.scene(shaken(2.2, coda=1.5))
-    assert longest_coda(given.case, given.model) == 1.5
+    assert longest_coda(given.request, given.model) == 1.5
 
 
 def test_the_largest_overlap_is_that_of_any_step():

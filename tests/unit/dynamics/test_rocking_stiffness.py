@@ -15,6 +15,7 @@ from oracle.newmark_slider import Slope, slide
 from dem_cli.analyses.estimate import describe
 from dem_cli.analyses.stiffness_check import change, trifles
 from dem_cli.analyses.time_history import alone
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.case.schema import Monitor
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness, turn_sideways
@@ -37,7 +38,7 @@ def turn(*blocks: dict) -> float:
     case, model = scene(
         tables(GROUND, *blocks, density=DENSITY, joints={"dry": {"friction": 0.7, "kn": KN, "points": 2}})
     )
-    properties = joint_properties(case, model)
+    properties = joint_properties(solver_request(case), model)
     return turn_sideways(model, joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model)).joints)
 
 
@@ -45,7 +46,7 @@ def chosen(*blocks: dict, duration: float = 10.0, kn="auto", settings=DEFAULT, *
     shaken = {"analysis": {"kind": "time-history", "duration": duration, **analysis}, "motion": {"kind": "none"}}
     joints = {"dry": {"friction": 0.7, "kn": kn}}
     case, model = scene(tables(GROUND, *blocks, density=DENSITY, joints=joints, **shaken))
-    return rocking_stiffness(case, model, settings)
+    return rocking_stiffness(solver_request(case), model, settings)
 
 
 def of_drums(n: int, b: float, h: float) -> float:

@@ -35,7 +35,7 @@ def lowest(blocks: list[dict], count: int, deformation: str, poisson: float = 0.
     dimension = len(blocks[0]["vertices"][0])
     case = {"dimension": dimension, "gravity": 1e-9, "materials": {"stone": stone}, "joints": {"dry": dry}}
     made = scene(case | {"block": blocks, "analysis": {"kind": "modes"}})
-    sim = Simulation(made.model, law_of(made.case), joint_properties(made.case, made.model), "large")
+    sim = Simulation(made.model, law_of(made.request), joint_properties(made.request, made.model), "large")
     return sim, modes(system(sim), count, dimension, made.model.n_blocks)
 
 

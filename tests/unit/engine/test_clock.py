@@ -8,7 +8,7 @@ import pytest
 from dem_cli.engine.clock import Clock
 from dem_cli.kernels.compilation.compile_time import Compilation
 from dem_cli.kernels.compilation.numba_setup import set_up_numba
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 
 @pytest.fixture(autouse=True, scope="module")

@@ -64,7 +64,7 @@ def open_heads(dimension: int) -> dict:
 def pairs_of(case: dict) -> tuple[Model, np.ndarray, np.ndarray]:
     """Model, pairs of blocks that touch (n, 2), and the normal of each joint."""
     made = scene(case)
-    properties = joint_properties(made.case, made.model)
+    properties = joint_properties(made.request, made.model)
     joints = start_joints(made.model, properties)
     return made.model, joints.blocks, joints.frames[joints.starts[:-1], : made.model.dimension]
 
@@ -134,7 +134,7 @@ def test_another_joint_in_the_heads(dimension):
     from_heads, by_hand = two_stacks(dimension, False), two_stacks(dimension, True)
     by_hand["interface"].append({"between": ["stone", "other"], "joint": "perpend"})
     made = [scene(case) for case in (from_heads, by_hand)]
-    joints = [start_joints(one.model, joint_properties(one.case, one.model)) for one in made]
+    joints = [start_joints(one.model, joint_properties(one.request, one.model)) for one in made]
     # the ground meets the right stack in an interface as well, so only joints between blocks that can move are compared
     rows = []
     for one, found in zip(made, joints, strict=True):
@@ -282,7 +282,7 @@ def test_friction_of_many_joints():
     more = {"kind": "wall", "id": "w", "block": [0.4, 0.2], "courses": 20, "blocks_per_course": 20}
     case = wall(2, {"dry": {"friction": 0.6, "variation": 0.2}}, structure=[more])
     made = scene(case)
-    joints = start_joints(made.model, joint_properties(made.case, made.model))
+    joints = start_joints(made.model, joint_properties(made.request, made.model))
     friction, n = joints.law[:, 0], len(joints.law)
     assert n > 1000
     assert friction.mean() == pytest.approx(0.6, abs=3 * 0.12 / np.sqrt(n))
@@ -295,7 +295,7 @@ def test_other_strengths_stay_where_the_law_has_them():
     """Cohesion stays; the residual friction goes along; the tensile strength ends at the tip of the new cone."""
     joint = {"law": "mohr-coulomb", "friction": 0.6, "cohesion": 1e5, "tension": 1.5e5, "friction_residual": 0.5}
     made = scene(wall(2, {"dry": joint | {"variation": 0.3}}))
-    law = start_joints(made.model, joint_properties(made.case, made.model)).law
+    law = start_joints(made.model, joint_properties(made.request, made.model)).law
     cohesion, tension, friction, residual = law[:, [1, 2, 3, 6]].T
     assert cohesion == pytest.approx(1e5)
     assert residual / friction == pytest.approx(0.5 / 0.6)

@@ -26,7 +26,7 @@ def monitors(quantity: str, pair: list[str]) -> Monitors:
             "monitor": [{"between": pair, "quantity": quantity}],
         }
     )
-    return Monitors(made.case, made.model)
+    return Monitors(made.request.monitors, made.model)
 
 
 def corners(x0, y0, z0, x1, y1, z1) -> list[list[float]]:

@@ -39,8 +39,8 @@ SPACE = tables(
 
 def shaken(case):
     made = scene(case)
-    properties = joint_properties(made.case, made.model, 1e5)
-    sim = DynamicSimulation(made.model, law_of(made.case), properties, Damping(fraction=0.35))
+    properties = joint_properties(made.request, made.model, 1e5)
+    sim = DynamicSimulation(made.model, law_of(made.request), properties, Damping(fraction=0.35))
     sim.begin(1e-4)
     return sim
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dem_cli.api import build_model, load_case
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.engine.monitors import Monitors
 
 CASE = """
@@ -29,7 +30,7 @@ def monitored(tmp_path, tables: str, far: float = 0.0) -> Monitors:
     path = tmp_path / "case.toml"
     path.write_text(CASE.format(far=far) + tables, encoding="utf-8")
     loaded = load_case(path)
-    return Monitors(loaded.case, build_model(loaded))
+    return Monitors(solver_request(loaded.case).monitors, build_model(loaded))
 
 
 def rocking(monitors: Monitors, angle, spin, change, slide=0.0) -> np.ndarray:

@@ -7,6 +7,7 @@ import pytest
 from synthetic.spatial_case import spatial_case
 
 from dem_cli.assembly.assemble import assemble
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.engine.monitors import Monitors
 
 COLUMN = {"kind": "column", "block": [0.4, 1.2], "courses": 1, "thickness": 0.6, "rotation_deg": 30.0,
@@ -19,7 +20,7 @@ ALONG = np.array([np.sqrt(0.75), 0.5, 0.0])
 def values(*monitors):
     """Of a column that tilts over its edge at +y by ANGLES: columns of monitors."""
     case = spatial_case(structure=[COLUMN], monitor=list(monitors))
-    watching = Monitors(case, assemble(case))
+    watching = Monitors(solver_request(case).monitors, assemble(case))
     model = watching.model
     samples = np.zeros((len(ANGLES), len(watching.watched), 3, 6))
     samples[:, :, 0, :3] = model.centroids[watching.watched] - watching.origin

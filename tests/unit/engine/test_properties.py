@@ -47,11 +47,11 @@ def test_points_of_a_joint_in_space(joint, stone, points, lands):
     }
     for analysis, count in (({"kind": "gravity"}, points), ({"kind": "time-history", "duration": 1.0}, lands)):
         made = scene(case | {"analysis": analysis})
-        properties = joint_properties(made.case, made.model)
+        properties = joint_properties(made.request, made.model)
         built = joints_of_start(made.model, bodies_at_rest(made.model), properties, smallest_edge(made.model))
         assert len(built.joints.kn) == count
         assert built.joints.kn.sum() == pytest.approx(properties.stiffness_of(np.zeros(1, int), built.geometry.keys)[0])
-        moving = Simulation(made.model, law_of(made.case), properties, "large")
+        moving = Simulation(made.model, law_of(made.request), properties, "large")
         assert (moving.joints.kn > 0.0).sum() == count
 
 
@@ -91,7 +91,7 @@ def test_points_follow_stiffness(joint, stone, points):
 
     def found(analysis):
         made = scene(case | {"analysis": analysis})
-        properties = joint_properties(made.case, made.model)
+        properties = joint_properties(made.request, made.model)
         bodies, smallest = bodies_at_rest(made.model), smallest_edge(made.model)
         return len(joints_of_start(made.model, bodies, properties, smallest).joints.kn)
 
@@ -128,7 +128,7 @@ def test_pressure_is_integrated_where_joints_are_elastic(analysis, joint, stone,
         blocks, more = [{k: v for k, v in one.items() if k != "vertices"} for one in blocks], {"dimension": 3}
     materials, joints = {"stone": {"density": 2000.0} | stone}, {"dry": joint}
     made = scene(tables(*blocks, materials=materials, joints=joints, analysis=analysis, **more))
-    properties = joint_properties(made.case, made.model)
+    properties = joint_properties(made.request, made.model)
     found = joints_of_start(made.model, bodies_at_rest(made.model), properties, smallest_edge(made.model)).joints
     assert found.integrated.tolist() == ([1] if integrated else [])
 

@@ -41,7 +41,7 @@ def column(dimension: int, damping: Damping, lift: float = 0.0) -> DynamicSimula
         "analysis": {"kind": "time-history", "duration": 1.0},
     }
     made = scene(case)
-    sim = DynamicSimulation(made.model, law_of(made.case), joint_properties(made.case, made.model), damping)
+    sim = DynamicSimulation(made.model, law_of(made.request), joint_properties(made.request, made.model), damping)
     if not lift:
         sim.use_combined_damping()
         for _ in range(20):

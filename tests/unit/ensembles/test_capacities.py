@@ -12,8 +12,8 @@ from dem_cli.ensembles.capacities import between, bounds_of, outcomes, split, su
 from dem_cli.ensembles.record_search import bisection, runs_per_record
 from dem_cli.ensembles.shaken_run import ShakenRunResult
 from dem_cli.errors import CaseError
+from dem_cli.output.distinct_names import distinct
 from dem_cli.output.ending import median_words
-from dem_cli.output.record import distinct
 from dem_cli.tables.analysis import FragilityAnalysis
 
 

@@ -27,8 +27,8 @@ def drums() -> DynamicSimulation:
     half = 0.5 * SIDE
     parts = [box("base", 2.0, -1.0, 1.0, fixed=True), box("low", half, 0.0, HEIGHT), box("top", half, HEIGHT, HEIGHT)]
     made = scene(tables(*parts, dimension=3, analysis={"kind": "gravity"}))
-    properties = joint_properties(made.case, made.model, 1e5)
-    sim = DynamicSimulation(made.model, law_of(made.case), properties, Damping(fraction=0.35))
+    properties = joint_properties(made.request, made.model, 1e5)
+    sim = DynamicSimulation(made.model, law_of(made.request), properties, Damping(fraction=0.35))
     sim.advance(2000, slot.FIRE)
     sim.begin(DT)
     return sim

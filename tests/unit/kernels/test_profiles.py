@@ -101,9 +101,9 @@ def test_forces_are_the_gradient_of_the_energy(shift, x, y, angle):
 def test_a_chain_without_rise_is_a_plane_joint():
     """The loop for profiles with two points at the ends does what the loop for plane joints does."""
     made = scene(stacked(0.3, friction=0.4, points=2))
-    plain = joint_properties(made.case, made.model, 1e5)
+    plain = joint_properties(made.request, made.model, 1e5)
     sims = [
-        engine.Simulation(made.model, law_of(made.case), properties, "large")
+        engine.Simulation(made.model, law_of(made.request), properties, "large")
         for properties in (plain, plain._replace(layouts=(PointLayout(points=2),)))
     ]
     for sim in sims:

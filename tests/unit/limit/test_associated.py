@@ -240,12 +240,12 @@ def test_a_law_without_straight_lines_is_refused():
     made = scene(wall())
     glue = dataclasses.replace(COULOMB, name="glue", envelope=None)
     with pytest.raises(UsageError, match="law 'glue' is curved"):
-        limit_loads(made.model, joint_properties(made.case, made.model), glue)
+        limit_loads(made.model, joint_properties(made.request, made.model), glue)
 
 
 def test_a_law_that_is_not_friction_alone_has_no_path():
     made = scene(wall())
-    structure = start_structure(made.model, joint_properties(made.case, made.model))
+    structure = start_structure(made.model, joint_properties(made.request, made.model))
     glued = {"envelope": lambda parameters, kn: envelope(len(kn), friction=0.6, cohesion=1e3)}
     for change in ({"envelope": None}, {"scalars": 1}, {"bonded": True}, glued):
         with pytest.raises(UsageError, match="law 'glue'"):
@@ -254,8 +254,8 @@ def test_a_law_that_is_not_friction_alone_has_no_path():
 
 def test_head_joints_without_friction():
     made = scene(wall())
-    structure = start_structure(made.model, joint_properties(made.case, made.model))
-    friction = friction_of(structure.joints, law_of(made.case), heads_frictionless=True)
+    structure = start_structure(made.model, joint_properties(made.request, made.model))
+    friction = friction_of(structure.joints, law_of(made.request), heads_frictionless=True)
     heads = np.abs(structure.joints.frames[:, 0]) > 0.9
     assert heads.any()
     np.testing.assert_array_equal(friction, np.where(heads, 0.0, MU))

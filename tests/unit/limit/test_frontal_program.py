@@ -24,8 +24,8 @@ DOWN = {"block": "b", "force": [0.1, -1.0], "kind": "live"}
 def both(case):
     """What Clarabel finds, and what the interior point on fronts does."""
     made = scene(case)
-    law = law_of(made.case)
-    structure = start_structure(made.model, joint_properties(made.case, made.model), law)
+    law = law_of(made.request)
+    structure = start_structure(made.model, joint_properties(made.request, made.model), law)
     strength = envelope_of(structure.joints, law, bonds=structure.bonds)
     return [limit_load(structure, strength, settings) for settings in (CLARABEL, ON_FRONTS)]
 

@@ -20,7 +20,7 @@ ARCH = CASES / "verification" / "arch_21.toml"
 def structure(case):
     made = scene(case)
     model = made.model
-    properties = joint_properties(made.case, model)
+    properties = joint_properties(made.request, model)
     joints = joints_of_start(model, bodies_at_rest(model), properties, smallest_edge(model)).joints
     return structure_of(model, joints)
 

@@ -36,8 +36,8 @@ EXACT = {  # closed forms and published exact loads
 
 def ingredients(case, *overrides):
     made = scene(case, *overrides)
-    structure = start_structure(made.model, joint_properties(made.case, made.model))
-    return structure, friction_of(structure.joints, law_of(made.case))
+    structure = start_structure(made.model, joint_properties(made.request, made.model))
+    return structure, friction_of(structure.joints, law_of(made.request))
 
 
 @pytest.mark.parametrize("name", EXACT)
@@ -104,7 +104,7 @@ def test_the_plateau_does_not_depend_on_stiffness():
 @pytest.mark.parametrize("change", ["mirrored", "rotated", "scaled"])
 def test_it_does_not_depend_on_the_point_of_view(change):
     made = scene(CASES / "wall_21_mu075.toml")
-    properties, law = joint_properties(made.case, made.model), law_of(made.case)
+    properties, law = joint_properties(made.request, made.model), law_of(made.request)
     model = made.model
     if change == "mirrored":
         model = mirrored_model(model)
@@ -253,7 +253,12 @@ def test_a_smoothed_path_ends_near_the_load_of_the_exact_one():
 def test_limit_analysis_smooths_the_paths_that_a_run_does(large):
     made = scene(CASES / "wall_21_mu075.toml")
     settings = replace(DEFAULT_LIMIT, path=replace(DEFAULT_LIMIT.path, large=large))
-    found = limit_loads(made.model, joint_properties(made.case, made.model), law_of(made.case), settings=settings)
+    found = limit_loads(
+        made.model,
+        joint_properties(made.request, made.model),
+        law_of(made.request),
+        settings=settings,
+    )
     assert (found.non_associated.smoothing > 0.0) == (large < 21)
     assert found.non_associated.load == pytest.approx(0.645963, rel=2e-3)
     assert ("smoothed path: an estimate" in dict(limit_rows(found.summary()))["non-associated"]) == (large < 21)

@@ -10,6 +10,7 @@ from studies.space.structures import box as block
 from studies.space.structures import prism, tables
 from synthetic.solids import Face, Solid, box, extruded, joints_of, model_of, panel, prism_on, turned, wedge
 
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.geometry.polygon import properties
 from dem_cli.limit.analysis import limit_loads, start_structure
@@ -91,8 +92,8 @@ def test_a_panel_topples_as_one(azimuth):
 @pytest.mark.parametrize("name", ["wall_21", "wall_21_mu075", "arch_21", "portal", "wall_with_door"])
 def test_planar_twins(name):
     made = scene(CASES / "verification" / f"{name}.toml")
-    flat = start_structure(made.model, joint_properties(made.case, made.model))
-    friction = friction_of(flat.joints, law_of(made.case))
+    flat = start_structure(made.model, joint_properties(made.request, made.model))
+    friction = friction_of(flat.joints, law_of(made.request))
     one = trace(flat, friction)
     other = trace(structure_of(*extruded(flat.model, flat.joints)), np.repeat(friction, 2))
     assert other.status == OK
@@ -244,7 +245,7 @@ def test_a_rest_on_the_way_is_no_failure_where_nothing_slides():
     case, model = scene(tables(ground, prism("block", outline, 0.0, 1.0), friction=0.8, direction=(*direction, 0.0)))
     outwards = np.array([left[1] - right[1], right[0] - left[0]]) * (-1.0, -1.0) / np.linalg.norm(right - left)
     expected = (left - properties(outline).centroid) @ outwards / (0.5 * outwards @ direction)
-    found = limit_loads(model, joint_properties(case, model), law_of(case)).summary()
+    found = limit_loads(model, joint_properties(solver_request(case), model), law_of(solver_request(case))).summary()
     assert found["non_associated_status"] == OK
     assert found["non_associated"] == pytest.approx(expected, rel=NEAR)
     assert found["associated"] == pytest.approx(expected, rel=NEAR)

@@ -145,8 +145,8 @@ def test_a_panel_topples_as_one(azimuth):
 def test_planar_twins(name):
     """Prisms pushed in the plane of their 2D twin: the same load, no motion out of the plane."""
     made = scene(CASES / "verification" / f"{name}.toml")
-    flat = start_structure(made.model, joint_properties(made.case, made.model))
-    strength = envelope_of(flat.joints, law_of(made.case))
+    flat = start_structure(made.model, joint_properties(made.request, made.model))
+    strength = envelope_of(flat.joints, law_of(made.request))
     spatial = structure_of(*extruded(flat.model, flat.joints))
     one, other = limit_load(flat, strength), limit_load(spatial, in_pairs(strength))
     assert other.multiplier == pytest.approx(one.multiplier, rel=1e-9)
@@ -158,8 +158,8 @@ def test_planar_twins_of_strong_joints(strength):
     law = "crushing" if "compression" in strength else "mohr-coulomb"
     joint = {"law": law, "friction": 0.6, "points": 3} | strength
     made = scene(tables(*running_wall(3, 3), joints={"dry": joint}))
-    flat = start_structure(made.model, joint_properties(made.case, made.model), law_of(made.case))
-    limits = envelope_of(flat.joints, law_of(made.case))
+    flat = start_structure(made.model, joint_properties(made.request, made.model), law_of(made.request))
+    limits = envelope_of(flat.joints, law_of(made.request))
     spatial = structure_of(*extruded(flat.model, flat.joints))
     assert load(spatial, in_pairs(limits)) == pytest.approx(limit_load(flat, limits).multiplier, rel=NEAR)
 
@@ -258,7 +258,7 @@ def test_a_slope_steeper_than_friction():
 def test_a_flat_twin_on_a_base_slides_either_way():
     """A prism that is pushed in its plane or across it: the same friction."""
     made = scene(on_a_base(block("b", rectangle(0.0, 0.0, 1.0, 0.2)), friction=0.4))
-    flat = start_structure(made.model, joint_properties(made.case, made.model))
+    flat = start_structure(made.model, joint_properties(made.request, made.model))
     model, joints = extruded(flat.model, flat.joints, depth=1.0)
     across = model._replace(live_loads=np.roll(model.live_loads, 1, axis=1))
     vars(across)["shapes"] = model.shapes

@@ -8,7 +8,7 @@ from engine import block, rectangle, running_wall, tables
 from engine.limits import on_a_base, solved
 
 from dem_cli.limit.snapshot import SHOWN_MOTION, Collapse, frame
-from dem_cli.output.record import STATES
+from dem_cli.records.frames import STATES
 
 
 def snapshot(found, tilting: bool = False):

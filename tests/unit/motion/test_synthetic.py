@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.motion.eurocode import target_of
 from dem_cli.motion.intensity_measures import fit
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.synthetic import envelope, power_spectrum, suite
@@ -56,7 +55,7 @@ def test_suites_of_seven_meet_eurocode_8(keys):
     """EN 1998-1 3.2.3.1.2(4)b, c over all periods from 0.04 s to 4 s, and not by being too strong on the whole."""
     made = table(count=7, **keys)
     motions = [Motion(record) for record in suite(made, 1)]
-    found = fit(motions, target_of(made))
+    found = fit(motions, made.target)
     assert found.meets
     assert found.mean_peak >= 1.0
     assert found.least_mean >= 0.90
@@ -66,7 +65,7 @@ def test_suites_of_seven_meet_eurocode_8(keys):
 def test_iterations_bring_the_spectrum_closer():
     def misfit(iterations):
         made = table(count=5, iterations=iterations)
-        found = fit([Motion(record) for record in suite(made, 2)], target_of(made))
+        found = fit([Motion(record) for record in suite(made, 2)], made.target)
         return np.sqrt((np.log(found.ratios) ** 2).mean())
 
     none, some = misfit(0), misfit(12)
@@ -75,7 +74,7 @@ def test_iterations_bring_the_spectrum_closer():
 
 def test_every_peak_reaches_the_ground_acceleration():
     made = table(count=20)
-    assert min(record.peak for record in suite(made, 3)) >= target_of(made).ground * (1 - 1e-12)
+    assert min(record.peak for record in suite(made, 3)) >= made.target.ground * (1 - 1e-12)
 
 
 def test_envelope():
@@ -90,7 +89,7 @@ def test_envelope():
 
 def test_power_spectrum_gives_back_the_response_spectrum():
     """Random vibration: response variance from G, times the peak factor, against the target (white-noise formula)."""
-    target = target_of(table())
+    target = table().target
     omegas = 2 * np.pi * np.arange(0.1, 35.0, 0.05)
     power = power_spectrum(target, omegas)
     assert (power >= 0.0).all()
@@ -105,5 +104,5 @@ def test_power_spectrum_gives_back_the_response_spectrum():
 
 def test_a_structure_of_known_period():
     made = table(count=3, first_period=0.5)
-    found = fit([Motion(record) for record in suite(made, 1)], target_of(made), made.first_period)
+    found = fit([Motion(record) for record in suite(made, 1)], made.target, made.first_period)
     assert found.periods[[0, -1]] == pytest.approx([0.1, 1.0])

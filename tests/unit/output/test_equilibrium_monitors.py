@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dem_cli.output.equilibrium_monitors import EquilibriumMonitors
-from dem_cli.output.record import Energy, HistoryRow
+from dem_cli.records.history_rows import Energy, HistoryRow
 
 
 def row(stage, load, *values):

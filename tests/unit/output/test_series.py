@@ -12,8 +12,8 @@ from synthetic.shaking import shaken, write_shaking
 
 from dem_cli.output.paraview.vtk import export_pvd
 from dem_cli.output.reader import read
-from dem_cli.output.record import Samples
 from dem_cli.output.store import ResultWriter
+from dem_cli.records.history_rows import Samples
 
 NAMES, QUANTITIES = ("top, left", "hinge"), ("acceleration", "opening")
 

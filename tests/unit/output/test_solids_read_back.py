@@ -18,7 +18,7 @@ from dem_cli.output.layout import CONTACTS, FRAMES, MODEL, declared
 from dem_cli.output.paraview.cells import CONVEX_POINT_SET, cells_of, outlines_of_joints
 from dem_cli.output.paraview.vtk import export_pvd, write_geometry
 from dem_cli.output.reader import read
-from dem_cli.output.record import JointPlaces
+from dem_cli.records.frames import JointPlaces
 
 DENSITY = 2000.0  # of the made-up models
 TETRAHEDRON, HEXAHEDRON, WEDGE, PYRAMID, PENTAGONAL, HEXAGONAL = 10, 12, 13, 14, 15, 16

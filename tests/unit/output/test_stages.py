@@ -12,7 +12,8 @@ from dem_cli.output.folder import locked
 from dem_cli.output.resume.checkpoints import Checkpoints
 from dem_cli.output.resume.kept_objects import all_changing, decoded, encoded
 from dem_cli.output.resume.kept_values import NotKept
-from dem_cli.output.resume.stages import NOTHING_KEPT, Keeping, KeptStages, stage
+from dem_cli.output.resume.stages import Keeping, KeptStages
+from dem_cli.records.ports import NOTHING_KEPT, stage
 
 WHAT = {"the case": "a", "the program": "b"}
 ALL = Keeping(first=0.0, every=0.0, worth=0.0)

@@ -15,9 +15,10 @@ from dem_cli.contact.drawn_joints import DrawnJoints
 from dem_cli.errors import UsageError
 from dem_cli.model.model import Model
 from dem_cli.output.reader import read
-from dem_cli.output.record import ContactRecord, Energy, Frame, Samples
 from dem_cli.output.store import ResultWriter
 from dem_cli.output.summary import ordered, to_json
+from dem_cli.records.frames import ContactRecord, Frame
+from dem_cli.records.history_rows import Energy, Samples
 
 
 def write(folder, frames, rows, model, monitors=("top",)):

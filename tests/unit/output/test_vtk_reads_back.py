@@ -8,8 +8,8 @@ from synthetic import history_rows, wall_frames, wall_model, wall_summary
 
 from dem_cli.output.paraview.fields import contact_fields
 from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices, vertex_velocities
-from dem_cli.output.record import STAGES
 from dem_cli.output.store import ResultWriter
+from dem_cli.records.frames import STAGES
 
 vtkIOHDF = pytest.importorskip("vtkmodules.vtkIOHDF")
 

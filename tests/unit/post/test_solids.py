@@ -9,9 +9,9 @@ from synthetic.solid_runs import drum, solid_frames, solid_wall
 from synthetic.spatial import spatial_model
 
 from dem_cli.geometry.polyhedron import box
-from dem_cli.output.record import STATES
 from dem_cli.post import frame_measures, view_box
 from dem_cli.post.scene import joint_strokes
+from dem_cli.records.frames import STATES
 from dem_cli.render import marks, solids
 
 

@@ -11,7 +11,7 @@ import pytest
 
 import dem_cli
 from dem_cli.errors import UsageError
-from dem_cli.output.record import ContactRecord, Frame
+from dem_cli.records.frames import ContactRecord, Frame
 
 WALL = {
     "title": "A small wall",

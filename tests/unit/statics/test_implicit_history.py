@@ -25,8 +25,8 @@ BASE = block("base", rectangle(-2, -1, 3, 0), fixed=True)
 
 def history_of(case, stop=lambda: False) -> ImplicitHistory:
     made = scene(case)
-    structure = start_structure(made.model, joint_properties(made.case, made.model))
-    problem = Elastic(structure, friction_of(structure.joints, law_of(made.case)))
+    structure = start_structure(made.model, joint_properties(made.request, made.model))
+    problem = Elastic(structure, friction_of(structure.joints, law_of(made.request)))
     return ImplicitHistory(problem, ImplicitHistorySettings(), stop)
 
 

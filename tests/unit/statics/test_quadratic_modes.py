@@ -43,7 +43,12 @@ def column(couple: float, law: str = "elastic", press: float = 0.0) -> dict:
 
 def at_rest(case: dict, kinematics: str) -> Simulation:
     made = scene(case)
-    sim = Simulation(made.model, law_of(made.case), joint_properties(made.case, made.model), kinematics)
+    sim = Simulation(
+        made.model,
+        law_of(made.request),
+        joint_properties(made.request, made.model),
+        kinematics,
+    )
     sim.use_combined_damping()
     for _ in range(60):
         sim.advance(200, slot.HOLD_LOAD)
@@ -73,7 +78,7 @@ def test_bending_through_joints_is_exact(kinematics):
     sim = at_rest(case, kinematics)
     bent, joint = couple * HIGH / (YOUNG * inertia), couple / (KN * inertia)
     starts = np.cumsum(np.full(BLOCKS, joint)) + bent * np.arange(BLOCKS)  # of each block, at its foot
-    (sways,) = Monitors(scene(case).case, sim.model).values(sim)
+    (sways,) = Monitors(scene(case).request.monitors, sim.model).values(sim)
     assert sways == pytest.approx(((starts + bent / 2.0) * HIGH).sum(), rel=3e-4)  # of second order
     turned = couple / inertia * ((BLOCKS + 1) / KN + BLOCKS * HIGH / YOUNG)
     exact = 1e-8 if kinematics == "fixed" else 1e-3  # of second order in the rotation

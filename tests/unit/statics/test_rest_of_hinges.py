@@ -4,7 +4,7 @@ import pytest
 
 from dem_cli.analyses.solve import solve
 from dem_cli.bench.cases import KNOWN_STRUCTURES
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 from dem_cli.statics import failure_load
 from dem_cli.statics.equilibrium import Verdict
 

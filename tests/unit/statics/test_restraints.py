@@ -50,7 +50,7 @@ def test_limit_analysis_knows_what_is_held(dimension, held):
     loads = {}
     for motions in ((held,), ()):
         made = scene(slender(motions, dimension))
-        found = limit_loads(made.model, joint_properties(made.case, made.model), law_of(made.case))
+        found = limit_loads(made.model, joint_properties(made.request, made.model), law_of(made.request))
         loads[motions] = found.associated.multiplier, found.non_associated.load
         assert not motions or not found.associated.velocities[made.model.held].any()
     assert loads[held,] == pytest.approx((MU, MU), rel=1e-5)

@@ -57,7 +57,12 @@ def column(dimension: int, *, load=(0.0, -1e5), poisson: float = POISSON, n: int
 
 def at_rest(case: dict, kinematics: str) -> Simulation:
     made = scene(case)
-    sim = Simulation(made.model, law_of(made.case), joint_properties(made.case, made.model), kinematics)
+    sim = Simulation(
+        made.model,
+        law_of(made.request),
+        joint_properties(made.request, made.model),
+        kinematics,
+    )
     sim.use_combined_damping()
     for _ in range(60):
         sim.advance(200, slot.HOLD_LOAD)
@@ -124,7 +129,7 @@ def test_a_block_that_nothing_holds_swells_without_stress(dimension):
     case["monitor"] = [{"point": corner, "component": "x"}, {"block": "b1", "component": "x"}]
     case |= {"strain": [{"block": "b1", "value": 3e-4}]}
     sim = at_rest(case, "fixed")
-    of_corner, of_block = Monitors(scene(case).case, sim.model).values(sim)
+    of_corner, of_block = Monitors(scene(case).request.monitors, sim.model).values(sim)
     assert of_corner - of_block == pytest.approx(3e-4 * WIDE / 2, rel=1e-6)
     strain = uniform_strain.strains(sim.bodies.modes, sim.shape.radii)[1]
     assert strain == pytest.approx(3e-4 * np.eye(dimension), abs=1e-9)
@@ -156,8 +161,8 @@ def test_strain_comes_little_by_little():
     found = []
     for ramp in (100, 1000):
         settings = replace(DEFAULT, relaxation=replace(DEFAULT.relaxation, ramp_of_memory=ramp))
-        properties = joint_properties(made.case, made.model)
-        sim = Simulation(made.model, law_of(made.case), properties, "fixed", settings=settings)
+        properties = joint_properties(made.request, made.model)
+        sim = Simulation(made.model, law_of(made.request), properties, "fixed", settings=settings)
         assert stand(sim, Budget(2_000_000)).state == "equilibrium"
         assert abs(measures.closure(sim)) < 1e-4
         found.append(measures.energy(sim).friction)
@@ -167,7 +172,7 @@ def test_strain_comes_little_by_little():
 def test_energy_of_modes_closes_while_blocks_vibrate():
     """Undamped, far from rest, with small steps: kinetic energy, springs, modes and loads balance."""
     made = scene(column(2, n=2, gravity=9.81))
-    sim = Simulation(made.model, law_of(made.case), joint_properties(made.case, made.model), "fixed")
+    sim = Simulation(made.model, law_of(made.request), joint_properties(made.request, made.model), "fixed")
     sim.use(0.02, 0.0)
     sim.advance(400, slot.HOLD_LOAD)
     inside = 0.5 * (sim.shape.mode_stiffness * sim.bodies.modes**2).sum()
@@ -196,7 +201,12 @@ def test_a_loaded_block_that_turns_keeps_its_strain(dimension):
 def test_a_column_on_rigid_joints_stands_however_soft_its_blocks_are():
     """It sinks by half a millimetre, thousands of times what joints with kn = "auto" give way: it was said to fall."""
     made = scene(column(2, n=4, load=(0.0, -1e5), poisson=0.0, gravity=9.81, kn="auto", ks="auto"))
-    sim = Simulation(made.model, law_of(made.case), joint_properties(made.case, made.model, 1e10), "fixed")
+    sim = Simulation(
+        made.model,
+        law_of(made.request),
+        joint_properties(made.request, made.model, 1e10),
+        "fixed",
+    )
     assert stand(sim, Budget(2_000_000)).state == "equilibrium"
     weight = 2000.0 * 9.81 * WIDE * HIGH * DEEP
     sunk = (3.5 * 1e5 + (3.5 + 2.5 + 1.5 + 0.25) * weight) * HIGH / (YOUNG * WIDE * DEEP)  # of its centroid
@@ -207,7 +217,7 @@ def test_a_column_on_rigid_joints_stands_however_soft_its_blocks_are():
 def test_blocks_that_are_moved_back_keep_their_strain(dimension):
     """Closure of rigid joints that is taken back: a settlement of such blocks ended with an internal error."""
     made = scene(column(dimension, n=1))
-    sim = Simulation(made.model, law_of(made.case), joint_properties(made.case, made.model), "large")
+    sim = Simulation(made.model, law_of(made.request), joint_properties(made.request, made.model), "large")
     sim.bodies.modes[1, 0], before = 1e-3, sim.bodies.positions.copy()
     motion = np.zeros_like(sim.bodies.velocities)
     motion[1, :dimension] = 2e-6
@@ -231,7 +241,12 @@ def test_wall_is_as_much_softer_as_finite_elements_say(ratio, finite_elements):
         for material in case["materials"].values():
             material |= {"young": 15.5e9, "poisson": 0.2, "deformation": kind}
         made = scene(case)
-        sim = Simulation(made.model, law_of(made.case), joint_properties(made.case, made.model), "fixed")
+        sim = Simulation(
+            made.model,
+            law_of(made.request),
+            joint_properties(made.request, made.model),
+            "fixed",
+        )
         sim.set_dead_share(0.0)
         sim.loads.dead[:] = 0.0
         sim.set_load(1e3)

@@ -7,7 +7,7 @@ from synthetic.spatial_case import spatial_case
 
 from dem_cli.analyses.solve import solve
 from dem_cli.assembly.assemble import assemble
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 T, L, H = 0.3, 0.6, 0.25  # thickness of walls, length and height of blocks [m]
 HOST = {"id": "host", "axis": [[-0.9, 0.0], [0.9, 0.0]]}

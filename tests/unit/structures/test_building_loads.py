@@ -7,7 +7,7 @@ from synthetic.spatial_case import spatial_case
 
 from dem_cli.analyses.solve import solve
 from dem_cli.assembly.assemble import assemble
-from dem_cli.output.record import Observer
+from dem_cli.records.ports import Observer
 
 T, RHO = 0.3, 2143.0  # thickness [m], density of peperino [kg/m3]
 

@@ -6,6 +6,7 @@ import time
 from typing import Any
 
 from dem_cli import api
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.errors import DemError
 from dem_cli.limit.analysis import limit_loads
@@ -54,7 +55,9 @@ def limit_answer(tables: Tables) -> Answer:
     try:
         loaded = from_tables(tables)
         model = api.build_model(loaded)
-        found = limit_loads(model, joint_properties(loaded.case, model), law_of(loaded.case)).summary()
+        found = limit_loads(
+            model, joint_properties(solver_request(loaded.case), model), law_of(solver_request(loaded.case))
+        ).summary()
         keys = ("associated", "associated_status", "non_associated", "non_associated_status")
         kept = {key: found[key] for key in keys if key in found}
     except DemError as error:

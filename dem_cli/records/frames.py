@@ -1,22 +1,18 @@
-"""Records of a run as a solver hands them to an observer: frames, contacts, history rows, energies, samples.
+"""Frames: the structure at one instant as a solver hands it to an observer, with its contacts, links and joints.
 
 Plain arrays, no files.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from dem_cli.geometry.rotation import tangents_of, turned_further, turning
-from dem_cli.output.resume.stages import NOTHING_KEPT, Stages
 
-if TYPE_CHECKING:
-    from dem_cli.model.model import Model
-
-NO_TANGENTS, NO_EXTREMES = np.zeros((0, 0)), np.zeros((0, 4))
+NO_TANGENTS = np.zeros((0, 0))
 NO_OUTLINES, NO_CORNERS, OUTLINE = np.zeros(0, np.int64), np.zeros((0, 3)), ("starts", "corners")
 STATES = ("open", "sticking", "sliding")  # meaning of ContactRecord.state 0, 1, 2
 STAGES = (
@@ -29,31 +25,7 @@ STAGES = (
     "shaking",
     "mode",
 )  # meaning of Frame.stage and HistoryRow.stage, in their order
-MONITOR_UNITS = {  # by what is followed
-    "displacement": "m",
-    "rotation": "rad",
-    "opening": "m",
-    "slip": "m",
-    "velocity": "m/s",
-    "acceleration": "m/s2",
-    "force": "N",
-    "elongation": "m",
-    "reaction": "N",
-    "reaction_moment": "N m",
-    "normal_force": "N",
-    "shear_force": "N",
-    "moment": "N m",
-    "shear_force_across": "N",
-    "moment_across": "N m",
-    "torsion": "N m",
-    "drift": "rad",
-}
-MONITOR_UNITS |= {f"absolute {name}": MONITOR_UNITS[name] for name in ("displacement", "velocity", "acceleration")}
-FALLS = "does not stand under its dead loads"  # status of a run of any kind, of limit analysis too
 FRAME_ARRAYS = ("positions", "orientations", "velocities")  # fields of Frame that each block has a row of
-BUCKLED = "buckled under its dead loads"  # the same where forces balance, and the tangent stiffness is negative
-ABOVE = "above what this geometry can carry"  # status of a failure load above its bound that nothing explains
-COLLAPSED, STOOD, ROCKS, MOVES = "collapsed", "stood", "still rocking", "still moving"  # ends of time histories
 
 
 class ContactRecord(NamedTuple):
@@ -219,94 +191,3 @@ def stacked(frames: Sequence[Frame]) -> FrameStack:
     stresses = np.concatenate(found) if found else None
     contacts = contacts._replace(blocks=through)
     return FrameStack(tuple(frames), positions, orientations, velocities, contacts, stresses)
-
-
-class Energy(NamedTuple):
-    """The energy ledger [J], since the start of the run; external: applied loads without gravity."""
-
-    kinetic: float
-    elastic: float
-    gravity: float
-    external: float
-    friction: float
-    damping: float  # local and numerical damping
-    supports: float  # work done by prescribed motions
-    dashpots: float = 0.0  # taken by viscous joints
-    mass_damping: float = 0.0
-    maxwell: float = 0.0  # taken by Maxwell elements of joints
-    reweighting: float = 0.0  # taken as the areas of contact points changed in space; minus: made
-
-
-class HistoryRow(NamedTuple):
-    """One row of the history; rows are written in the order in which they come."""
-
-    stage: str
-    step: int
-    load: float
-    displacement: float
-    unbalanced: float  # largest unbalanced force on a block over its own weight
-    overlap: float  # largest overlap [m]
-    energy: Energy
-    monitors: tuple[float, ...]  # in the order of the case's [[monitor]] tables
-    time: float = 0.0  # since the start of a time history [s]
-    live_displacement: float = 0.0  # of the live load along itself since it rested under dead loads [m], signed
-
-
-class Samples(NamedTuple):
-    """A stretch of the histories of a time history, at even intervals."""
-
-    times: np.ndarray  # [s], (n,)
-    base: np.ndarray  # acceleration, velocity and displacement of the base [m, s], (n, 3, d)
-    monitors: np.ndarray  # in the order of the case's [[monitor]] tables, (n, n_monitors)
-    # Highest value, its time [s], lowest, its time of each monitor at any step, (n_monitors, 4); (0, 4): of samples
-    extremes: np.ndarray = NO_EXTREMES
-    coda: bool = False  # whether the motion of the ground, or the time that a case asks for, was over
-
-
-class RunRow(NamedTuple):
-    """Outcome of one of many runs."""
-
-    structure: int  # 0: that of the case; others are slightly different
-    record: str  # the ground motion
-    intensity: float
-    acceleration: float  # peak of the ground [m/s2]
-    collapsed: bool | None  # None: the run failed
-    time: float | None  # of the collapse [s]
-    how: str  # what collapsed and how, or why the run failed
-    peaks: tuple[float, ...]  # largest absolute values, as the [[monitor]] tables are; nan: it means nothing
-
-
-def distinct(names: Iterable[str]) -> list[str]:
-    """The same names, with a number where one comes again."""
-    found: list[str] = []
-    for name in names:
-        count = 1 + sum(other == name or other.startswith(f"{name} #") for other in found)
-        found.append(name if count == 1 else f"{name} #{count}")
-    return found
-
-
-class Observer:
-    """Observer of a run: who a solver reports to. This one does nothing; all return at once and change no state.
-
-    stages  keeps the stages of the run for `--resume`
-    """
-
-    stages: Stages = NOTHING_KEPT
-
-    def frame(self, frame: Frame) -> None:
-        """A snapshot to keep."""
-
-    def row(self, row: HistoryRow) -> None:
-        """A row of the history to keep."""
-
-    def samples(self, samples: Samples) -> None:
-        """A stretch of a time history to keep; follows the one before."""
-
-    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """Where the run stands; `fraction` of the stage that is done, None where nobody can tell."""
-
-    def structure(self, model: Model) -> None:
-        """The structure that all frames show, where it is another one than that of the case; before any of them."""
-
-    def runs(self, rows: Sequence[RunRow]) -> None:
-        """All runs of an analysis that consists of many, at its end."""
