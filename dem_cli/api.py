@@ -100,7 +100,7 @@ def _initial() -> Any:
 
 
 def _motions() -> Any:
-    from dem_cli.motion.table import MOTIONS
+    from dem_cli.tables.base_motion import MOTIONS
 
     return MOTIONS
 

@@ -6,10 +6,9 @@ its messages and its pages follow from the declaration (tables/declared.py).
 
 from __future__ import annotations
 
-import copy
 import math
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import cache
 from inspect import get_annotations
 from types import MappingProxyType, UnionType
@@ -156,8 +155,20 @@ class Parameters:
 
     def with_values(self, **values: Any) -> Self:
         """A copy with these values in place of its own, unchecked."""
-        made = copy.copy(self)
-        vars(made).update(values, _given=self.names_given | values.keys())
+        return self._unchecked(_values(self) | values, self.names_given | values.keys())
+
+    @classmethod
+    def _unchecked(cls, values: Mapping[str, Any], given: Collection[str]) -> Self:
+        made = cls.__new__(cls)
+        vars(made).update(values, _given=frozenset(given))
+        return made
+
+    @property
+    def alone(self) -> Parameters:
+        """The same values as a record alone, also of a table of a case file that is such a record."""
+        declaring: Any = next(base for base in type(self).__mro__ if "declared" in vars(base))
+        values = {n: one.alone if isinstance(one, Parameters) else one for n, one in _values(self).items()}
+        made: Parameters = declaring._unchecked(values, self.names_given)
         return made
 
     def __eq__(self, other: object) -> bool:

@@ -14,22 +14,9 @@ from parsed import nodes, tree
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 CORE = {"arithmetic", "code_checks", "contact", "dynamics", "engine", "geometry", "kernels", "laws", "limit", "links",
         "model", "motion", "records", "statics"}  # fmt: skip
-BELOW = {
-    "declarations",
-    "errors",
-    "frozen_records",
-    "input_limits",
-    "interrupts",
-    "late_modules",
-    "registration",
-    "version",
-}
-LEFT = {  # arrows that still lead out: this list only gets shorter
-    ("motion/motion.py", "case.base"),
-    ("motion/table.py", "case.base"),
-    ("motion/table.py", "case.named_file"),
-    ("motion/table.py", "tables.spectrum"),
-}
+BELOW = {"declarations", "errors", "frozen_records", "input_limits", "interrupts", "late_modules", "registration",
+         "version"}  # fmt: skip
+LEFT: set[tuple[str, str]] = set()  # arrows that still lead out: this list only gets shorter
 ABOVE = ("pydantic", "h5py", "click", "rich", "matplotlib")  # libraries of the other storeys
 
 

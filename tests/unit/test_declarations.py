@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
 import pytest
 from pydantic import BaseModel, ValidationError
 
+from dem_cli.api import load_case
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.declarations import KeyProblem, Limits, Parameters, Positive, SpaceVector, parameter
+from dem_cli.laws.fracture import FractureJoint
 from dem_cli.tables.declared import table_of
 
+CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
 ALONE = """
 import sys
 import dem_cli.laws.registry, dem_cli.laws.mohr_coulomb, dem_cli.links.registry, dem_cli.links.tie, dem_cli.links.bar
+import dem_cli.motion.motion, dem_cli.motion.synthetic, dem_cli.motion.eurocode_suites
 from dem_cli.laws.displacement_path import drive
 law = dem_cli.laws.registry.LAWS["mohr-coulomb"]
 joint = law.parameters(friction=0.5, cohesion=1e4)
@@ -101,6 +107,15 @@ def test_names_are_known_and_given():
         Wider(wide=1.0)
 
 
+def test_solvers_are_handed_records_alone():
+    """Nothing of pydantic is in the request that a case makes of them."""
+    case = load_case(CASES / "mortar_wall_cycle.toml").case
+    joints = solver_request(case).joints.named
+    assert {name: type(joint) for name, joint in joints.items()} == dict.fromkeys(case.joints, FractureJoint)
+    assert not isinstance(joints["mortar"], BaseModel)
+    assert joints["mortar"].tension == case.joints["mortar"].tension
+
+
 def test_changes_are_checked_or_not():
     record = Outer(length=2.0, least=1.0)
     assert record.with_values(length=0.5).names_given == {"length", "least"}
@@ -115,10 +130,9 @@ def test_a_table_is_such_a_record(values):
     plain = Wider(**values | ({"inner": Inner(share=0.5)} if "inner" in values else {}))
     assert isinstance(table, BaseModel)
     assert isinstance(table, Wider)
-    assert table.names_given == plain.names_given
-    names = set(Wider.declared) - {"inner"}
-    assert [getattr(table, name) for name in names] == [getattr(plain, name) for name in names]
-    assert table.inner is None or table.inner.share == plain.inner.share
+    assert table.names_given == plain.names_given == table.alone.names_given
+    assert type(table.alone) is type(plain) is Wider
+    assert table.alone == plain == plain.alone
     assert table.with_values(width=3.0).width == 3.0
     assert table.checked(width=3.0).names_given == table.names_given | {"width"}
 
