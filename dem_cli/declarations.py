@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import operator
+import sys
 from collections.abc import Callable, Collection, Mapping
 from functools import cache
 from inspect import get_annotations
@@ -23,7 +24,6 @@ from typing import (
     dataclass_transform,
     get_args,
     get_origin,
-    get_type_hints,
 )
 
 REQUIRED: Any = ...  # in place of a default: the parameter must be given
@@ -33,7 +33,6 @@ KEEPS: dict[str, Callable[[Any, Any], bool]] = {  # whether a value keeps each o
     "lt": operator.lt,
     "le": operator.le,
     "min_length": lambda value, least: len(value) >= least,
-    "max_length": lambda value, most: len(value) <= most,
 }
 
 
@@ -56,7 +55,6 @@ class Limits(NamedTuple):
     lt: float | None = None
     le: float | None = None
     min_length: int | None = None
-    max_length: int | None = None
 
     @property
     def named(self) -> dict[str, Any]:
@@ -81,13 +79,19 @@ SpaceVector = Annotated[tuple[float, ...], SpaceLength(2, 3)]  # a point, vector
 class Parameter(NamedTuple):
     """Declaration of one parameter.
 
-    words: description, with the unit in brackets, and examples; check: of the value alone.
+    words: description, with the unit in brackets, and examples; annotation: its type as it is written in `module`.
     """
 
     default: Any = REQUIRED
     words: Mapping[str, Any] = MappingProxyType({})
     limits: Limits = Limits()
-    check: Callable[[Any], Any] | None = None
+    annotation: str = "Any"
+    module: str = __name__
+
+    @property
+    def kind(self) -> Any:
+        """Its annotated type."""
+        return _evaluated(self.annotation, self.module)
 
 
 def parameter(
@@ -95,16 +99,15 @@ def parameter(
     description: str,
     default: Any = REQUIRED,
     examples: list[Any] | None = None,
-    check: Callable[[Any], Any] | None = None,
-    **limits: Any,
+    **limits: float,
 ) -> Any:
     """A parameter of a class of `Parameters`; its conventions: case/keys.py.
 
-    limits: gt, ge, lt, le; examples: where there is no default to show; check: raises KeyProblem, else returns the
-    value.
+    limits: gt, ge, lt, le; examples: where there is no default to show.
     """
+    bounds: dict[str, Any] = limits
     words = {"description": description} | ({"examples": examples} if examples else {})
-    return Parameter(default, words, Limits(**limits), check)
+    return Parameter(default, words, Limits(**bounds))
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True, field_specifiers=(parameter,))
@@ -114,15 +117,17 @@ class Parameters:
     declared: ClassVar[dict[str, Parameter]] = {}
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Takes the parameters out of the body of a class."""
+        """Takes the parameters, with their annotations, out of the body of a class."""
         super().__init_subclass__(**options)
-        own = {name: vars(cls).get(name, REQUIRED) for name, kind in get_annotations(cls).items() if _is_value(kind)}
-        for name in own.keys() & vars(cls).keys():
-            delattr(cls, name)
-        inherited = {name: one for base in reversed(cls.__mro__[1:]) for name, one in _of(base).items()}
-        cls.declared = inherited | {
-            n: value if isinstance(value, Parameter) else Parameter(value) for n, value in own.items()
-        }
+        cls.declared = {name: one for base in reversed(cls.__mro__[1:]) for name, one in _of(base).items()}
+        annotations = get_annotations(cls)
+        for name in [name for name, written in annotations.items() if not written.startswith("ClassVar")]:
+            value = vars(cls).get(name, REQUIRED)
+            one = value if isinstance(value, Parameter) else Parameter(value)
+            cls.declared[name] = one._replace(annotation=annotations.pop(name), module=cls.__module__)
+            if name in vars(cls):
+                delattr(cls, name)
+        cls.__annotations__ = annotations  # those that are left: else a table would evaluate all of them anew
 
     def __init__(self, **values: Any) -> None:
         """Raises KeyProblem where a value is not allowed, TypeError where one is missing or unknown."""
@@ -130,14 +135,10 @@ class Parameters:
         missing = {name for name, one in self.declared.items() if one.default is REQUIRED} - values.keys()
         if unknown or missing:
             raise TypeError(f"{type(self).__name__}: unknown {sorted(unknown)}, missing {sorted(missing)}")
-        own: Any = type(self)
-        kinds = _kinds(own)
         for name, value in values.items():
             one = self.declared[name]
-            if not _fits(value, kinds[name]) or not (value is None or _within(value, one.limits)):
-                raise KeyProblem(f"{show(value)} is not allowed: {one.words.get('description', kinds[name])}", name)
-            if one.check:
-                one.check(value)
+            if not _fits(value, one.kind) or not (value is None or _within(value, one.limits)):
+                raise KeyProblem(f"{show(value)} is not allowed: {one.words.get('description', one.annotation)}", name)
         vars(self).update({name: one.default for name, one in self.declared.items()} | values, _given=frozenset(values))
         self.check()
 
@@ -148,10 +149,6 @@ class Parameters:
 
     def check(self) -> None:
         """Raises KeyProblem, with the key, or ValueError where the values contradict each other."""
-
-    def checked(self, **values: Any) -> Self:
-        """A record with these values in place of its own. Raises as `check` does."""
-        return type(self)(**{name: getattr(self, name) for name in self.names_given} | values)
 
     def with_values(self, **values: Any) -> Self:
         """A copy with these values in place of its own, unchecked."""
@@ -205,18 +202,14 @@ def _of(base: Any) -> dict[str, Parameter]:
     return getattr(base, "declared", {})
 
 
-def _is_value(kind: Any) -> bool:
-    """Whether an annotation, as it is written, is that of a parameter."""
-    return not str(kind).startswith("ClassVar")
-
-
 def _values(record: Any) -> dict[str, Any]:
     return {name: getattr(record, name) for name in record.declared}
 
 
 @cache
-def _kinds(declaring: Any) -> dict[str, Any]:
-    return get_type_hints(declaring, include_extras=True)
+def _evaluated(annotation: str, module: str) -> Any:
+    """The type that an annotation says, with the names of the module in which it is written."""
+    return eval(annotation, vars(sys.modules[module]))
 
 
 def _fits(value: Any, kind: Any) -> bool:
