@@ -16,13 +16,13 @@ from dem_cli.analyses.estimate import describe
 from dem_cli.analyses.stiffness_check import change, trifles
 from dem_cli.analyses.time_history import alone
 from dem_cli.assembly.solver_request import solver_request
-from dem_cli.case.schema import Monitor
 from dem_cli.contact.start import bodies_at_rest, joints_of_start
 from dem_cli.dynamics.rocking_stiffness import rocking_stiffness, turn_sideways
 from dem_cli.engine.properties import joint_properties
 from dem_cli.engine.settings import DEFAULT
 from dem_cli.model.scales import smallest_edge
 from dem_cli.output.ending import ending_words
+from dem_cli.records.requests import MonitorRequest
 
 KN, DENSITY, G = 1e9, 2000.0, 9.81
 GROUND = block("ground", rectangle(-30.0, -1.0, 30.0, 0.0), fixed=True)
@@ -209,7 +209,7 @@ def test_a_block_that_slides_does_not_hang_on_its_stiffness(amplitude, friction)
 
 def test_peaks_that_matter_are_compared():
     """Of one that is a thousandth of another of its kind, and of a thousandth of the block, nothing is said."""
-    monitors = [Monitor(block="b", quantity=q, component="x") for q in ("displacement", "displacement", "velocity")]
+    monitors = [MonitorRequest(q, "x", selected="b") for q in ("displacement", "displacement", "velocity")]
     peaks = np.array([2.0, 1.9e-3, 3.0])
     least = trifles(monitors, peaks, 0.5, 9.81, DEFAULT)
     assert least == pytest.approx([2e-3, 2e-3, 3e-3])
