@@ -121,6 +121,8 @@ class Parameters:
         super().__init_subclass__(**options)
         cls.declared = {name: one for base in reversed(cls.__mro__[1:]) for name, one in _of(base).items()}
         annotations = get_annotations(cls)
+        if not all(isinstance(written, str) for written in annotations.values()):
+            raise TypeError(f"{cls.__module__} declares parameters: begin it with `from __future__ import annotations`")
         for name in [name for name, written in annotations.items() if not written.startswith("ClassVar")]:
             value = vars(cls).get(name, REQUIRED)
             one = value if isinstance(value, Parameter) else Parameter(value)
@@ -135,12 +137,17 @@ class Parameters:
         missing = {name for name, one in self.declared.items() if one.default is REQUIRED} - values.keys()
         if unknown or missing:
             raise TypeError(f"{type(self).__name__}: unknown {sorted(unknown)}, missing {sorted(missing)}")
-        for name, value in values.items():
-            one = self.declared[name]
-            if not _fits(value, one.kind) or not (value is None or _within(value, one.limits)):
-                raise KeyProblem(f"{show(value)} is not allowed: {one.words.get('description', one.annotation)}", name)
         vars(self).update({name: one.default for name, one in self.declared.items()} | values, _given=frozenset(values))
-        self.check()
+        try:
+            for name, value in values.items():
+                one = self.declared[name]
+                if not _fits(value, one.kind) or not (value is None or _within(value, one.limits)):
+                    said = one.words.get("description", one.annotation)
+                    raise KeyProblem(f"{show(value)} is not allowed: {said}", name)
+            self.check()
+        except KeyProblem as problem:
+            problem.add_note(f"{type(self).__name__}: {'.'.join(map(str, problem.keys))}")
+            raise
 
     @property
     def names_given(self) -> set[str]:

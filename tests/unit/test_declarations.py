@@ -97,9 +97,15 @@ def test_a_record_takes_no_value_that_its_table_refuses(wrong, key):
     with pytest.raises(KeyProblem) as found:
         Wider(**{"length": 2.0} | wrong)
     assert found.value.keys == (key,)
+    assert found.value.__notes__ == [f"Wider: {key}"]
     if key != "inner":  # which a case file gives as a table
         with pytest.raises(ValidationError):
             table_of(Wider).model_validate({"length": 2.0} | wrong)
+
+
+def test_a_declaring_file_keeps_annotations_as_they_are_written():
+    with pytest.raises(TypeError, match="begin it with `from __future__ import annotations`"):
+        type("Evaluated", (Parameters,), {"__annotations__": {"length": float}, "__module__": __name__})
 
 
 def test_names_are_known_and_given():
