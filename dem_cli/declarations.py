@@ -219,9 +219,19 @@ def _evaluated(annotation: str, module: str) -> Any:
     return eval(annotation, vars(sys.modules[module]))
 
 
+@cache
+def _taken_apart(kind: Any) -> tuple[Any, tuple[Any, ...]]:
+    return get_origin(kind), get_args(kind)
+
+
+@cache
+def _bounds(limits: Limits) -> tuple[tuple[Callable[[Any, Any], bool], float], ...]:
+    return tuple((KEEPS[name], bound) for name, bound in limits.named.items())
+
+
 def _fits(value: Any, kind: Any) -> bool:
     """Whether a value is of an annotated type and within its limits."""
-    origin, parts = get_origin(kind), get_args(kind)
+    origin, parts = _taken_apart(kind)
     if origin is Annotated:
         return _fits(value, parts[0]) and all(_within(value, limit) for limit in parts[1:])
     if origin in (Union, UnionType):
@@ -242,4 +252,4 @@ def _within(value: Any, limits: Limits | SpaceLength) -> bool:
     """Whether a value keeps within limits on it, or on how many there are of it."""
     if isinstance(limits, SpaceLength):
         return len(value) in limits
-    return all(KEEPS[name](value, limit) for name, limit in limits.named.items())
+    return all(keeps(value, bound) for keeps, bound in _bounds(limits))
