@@ -75,8 +75,8 @@ def _case_model(
         {kind: ANALYSES[kind].parameters for kind in analyses},
         {key: load() for key, load in TABLES.items() if key in keys},
         _motions() if "motion" in keys else None,
-        {key: LINKS[key].parameters for key in LINKS if key in keys}
-        | {key: PROFILES[key] for key in PROFILES if key in keys},
+        {key: table_of(LINKS[key].parameters) for key in LINKS if key in keys}
+        | {key: table_of(PROFILES[key]) for key in PROFILES if key in keys},
         left_out=Case.model_fields.keys() - keys - {"analysis"},
     )
 
@@ -100,7 +100,7 @@ def _initial() -> Any:
 
 
 def _motions() -> Any:
-    from dem_cli.motion.table import MOTIONS
+    from dem_cli.tables.base_motion import MOTIONS
 
     return MOTIONS
 

@@ -6,10 +6,10 @@ its messages and its pages follow from the declaration (tables/declared.py).
 
 from __future__ import annotations
 
-import copy
 import math
 import operator
-from collections.abc import Callable, Mapping
+import sys
+from collections.abc import Callable, Collection, Mapping
 from functools import cache
 from inspect import get_annotations
 from types import MappingProxyType, UnionType
@@ -24,7 +24,6 @@ from typing import (
     dataclass_transform,
     get_args,
     get_origin,
-    get_type_hints,
 )
 
 REQUIRED: Any = ...  # in place of a default: the parameter must be given
@@ -34,7 +33,6 @@ KEEPS: dict[str, Callable[[Any, Any], bool]] = {  # whether a value keeps each o
     "lt": operator.lt,
     "le": operator.le,
     "min_length": lambda value, least: len(value) >= least,
-    "max_length": lambda value, most: len(value) <= most,
 }
 
 
@@ -57,7 +55,6 @@ class Limits(NamedTuple):
     lt: float | None = None
     le: float | None = None
     min_length: int | None = None
-    max_length: int | None = None
 
     @property
     def named(self) -> dict[str, Any]:
@@ -82,13 +79,19 @@ SpaceVector = Annotated[tuple[float, ...], SpaceLength(2, 3)]  # a point, vector
 class Parameter(NamedTuple):
     """Declaration of one parameter.
 
-    words: description, with the unit in brackets, and examples; check: of the value alone.
+    words: description, with the unit in brackets, and examples; annotation: its type as it is written in `module`.
     """
 
     default: Any = REQUIRED
     words: Mapping[str, Any] = MappingProxyType({})
     limits: Limits = Limits()
-    check: Callable[[Any], Any] | None = None
+    annotation: str = "Any"
+    module: str = __name__
+
+    @property
+    def kind(self) -> Any:
+        """Its annotated type."""
+        return _evaluated(self.annotation, self.module)
 
 
 def parameter(
@@ -96,16 +99,15 @@ def parameter(
     description: str,
     default: Any = REQUIRED,
     examples: list[Any] | None = None,
-    check: Callable[[Any], Any] | None = None,
-    **limits: Any,
+    **limits: float,
 ) -> Any:
     """A parameter of a class of `Parameters`; its conventions: case/keys.py.
 
-    limits: gt, ge, lt, le; examples: where there is no default to show; check: raises KeyProblem, else returns the
-    value.
+    limits: gt, ge, lt, le; examples: where there is no default to show.
     """
+    bounds: dict[str, Any] = limits
     words = {"description": description} | ({"examples": examples} if examples else {})
-    return Parameter(default, words, Limits(**limits), check)
+    return Parameter(default, words, Limits(**bounds))
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True, field_specifiers=(parameter,))
@@ -115,15 +117,19 @@ class Parameters:
     declared: ClassVar[dict[str, Parameter]] = {}
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Takes the parameters out of the body of a class."""
+        """Takes the parameters, with their annotations, out of the body of a class."""
         super().__init_subclass__(**options)
-        own = {name: vars(cls).get(name, REQUIRED) for name, kind in get_annotations(cls).items() if _is_value(kind)}
-        for name in own.keys() & vars(cls).keys():
-            delattr(cls, name)
-        inherited = {name: one for base in reversed(cls.__mro__[1:]) for name, one in _of(base).items()}
-        cls.declared = inherited | {
-            n: value if isinstance(value, Parameter) else Parameter(value) for n, value in own.items()
-        }
+        cls.declared = {name: one for base in reversed(cls.__mro__[1:]) for name, one in _of(base).items()}
+        annotations = get_annotations(cls)
+        if not all(isinstance(written, str) for written in annotations.values()):
+            raise TypeError(f"{cls.__module__} declares parameters: begin it with `from __future__ import annotations`")
+        for name in [name for name, written in annotations.items() if not written.startswith("ClassVar")]:
+            value = vars(cls).get(name, REQUIRED)
+            one = value if isinstance(value, Parameter) else Parameter(value)
+            cls.declared[name] = one._replace(annotation=annotations.pop(name), module=cls.__module__)
+            if name in vars(cls):
+                delattr(cls, name)
+        cls.__annotations__ = annotations  # those that are left: else a table would evaluate all of them anew
 
     def __init__(self, **values: Any) -> None:
         """Raises KeyProblem where a value is not allowed, TypeError where one is missing or unknown."""
@@ -131,16 +137,17 @@ class Parameters:
         missing = {name for name, one in self.declared.items() if one.default is REQUIRED} - values.keys()
         if unknown or missing:
             raise TypeError(f"{type(self).__name__}: unknown {sorted(unknown)}, missing {sorted(missing)}")
-        own: Any = type(self)
-        kinds = _kinds(own)
-        for name, value in values.items():
-            one = self.declared[name]
-            if not _fits(value, kinds[name]) or not (value is None or _within(value, one.limits)):
-                raise KeyProblem(f"{value!r} is not allowed: {one.words.get('description', kinds[name])}", name)
-            if one.check:
-                one.check(value)
         vars(self).update({name: one.default for name, one in self.declared.items()} | values, _given=frozenset(values))
-        self.check()
+        try:
+            for name, value in values.items():
+                one = self.declared[name]
+                if not _fits(value, one.kind) or not (value is None or _within(value, one.limits)):
+                    said = one.words.get("description", one.annotation)
+                    raise KeyProblem(f"{show(value)} is not allowed: {said}", name)
+            self.check()
+        except KeyProblem as problem:
+            problem.add_note(f"{type(self).__name__}: {'.'.join(map(str, problem.keys))}")
+            raise
 
     @property
     def names_given(self) -> set[str]:
@@ -150,14 +157,22 @@ class Parameters:
     def check(self) -> None:
         """Raises KeyProblem, with the key, or ValueError where the values contradict each other."""
 
-    def checked(self, **values: Any) -> Self:
-        """A record with these values in place of its own. Raises as `check` does."""
-        return type(self)(**{name: getattr(self, name) for name in self.names_given} | values)
-
     def with_values(self, **values: Any) -> Self:
         """A copy with these values in place of its own, unchecked."""
-        made = copy.copy(self)
-        vars(made).update(values, _given=self.names_given | values.keys())
+        return self._unchecked(_values(self) | values, self.names_given | values.keys())
+
+    @classmethod
+    def _unchecked(cls, values: Mapping[str, Any], given: Collection[str]) -> Self:
+        made = cls.__new__(cls)
+        vars(made).update(values, _given=frozenset(given))
+        return made
+
+    @property
+    def alone(self) -> Parameters:
+        """The same values as a record alone, also of a table of a case file that is such a record."""
+        declaring: Any = next(base for base in type(self).__mro__ if "declared" in vars(base))
+        values = {n: one.alone if isinstance(one, Parameters) else one for n, one in _values(self).items()}
+        made: Parameters = declaring._unchecked(values, self.names_given)
         return made
 
     def __eq__(self, other: object) -> bool:
@@ -173,13 +188,25 @@ class Parameters:
         raise AttributeError(f"cannot assign to '{name}': {type(self).__name__} is frozen")
 
 
+def show(value: Any) -> str:
+    """A value as it stands in the file, not longer than a glance."""
+    if isinstance(value, str):
+        text = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in f"'{value}'")
+    elif isinstance(value, bool):
+        text = "true" if value else "false"
+    elif isinstance(value, float):
+        text = f"{value:.12g}"
+    elif isinstance(value, dict):
+        text = "a table" if value else "an empty table"
+    elif isinstance(value, (list, tuple)):
+        text = f"[{', '.join(show(item) for item in value)}]"
+    else:
+        text = str(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
 def _of(base: Any) -> dict[str, Parameter]:
     return getattr(base, "declared", {})
-
-
-def _is_value(kind: Any) -> bool:
-    """Whether an annotation, as it is written, is that of a parameter."""
-    return not str(kind).startswith("ClassVar")
 
 
 def _values(record: Any) -> dict[str, Any]:
@@ -187,13 +214,24 @@ def _values(record: Any) -> dict[str, Any]:
 
 
 @cache
-def _kinds(declaring: Any) -> dict[str, Any]:
-    return get_type_hints(declaring, include_extras=True)
+def _evaluated(annotation: str, module: str) -> Any:
+    """The type that an annotation says, with the names of the module in which it is written."""
+    return eval(annotation, vars(sys.modules[module]))
+
+
+@cache
+def _taken_apart(kind: Any) -> tuple[Any, tuple[Any, ...]]:
+    return get_origin(kind), get_args(kind)
+
+
+@cache
+def _bounds(limits: Limits) -> tuple[tuple[Callable[[Any, Any], bool], float], ...]:
+    return tuple((KEEPS[name], bound) for name, bound in limits.named.items())
 
 
 def _fits(value: Any, kind: Any) -> bool:
     """Whether a value is of an annotated type and within its limits."""
-    origin, parts = get_origin(kind), get_args(kind)
+    origin, parts = _taken_apart(kind)
     if origin is Annotated:
         return _fits(value, parts[0]) and all(_within(value, limit) for limit in parts[1:])
     if origin in (Union, UnionType):
@@ -214,4 +252,4 @@ def _within(value: Any, limits: Limits | SpaceLength) -> bool:
     """Whether a value keeps within limits on it, or on how many there are of it."""
     if isinstance(limits, SpaceLength):
         return len(value) in limits
-    return all(KEEPS[name](value, limit) for name, limit in limits.named.items())
+    return all(keeps(value, bound) for keeps, bound in _bounds(limits))

@@ -15,7 +15,8 @@ from dem_cli.motion.motion import Motion, Waveform, moving_at_the_end
 from dem_cli.motion.record import Accelerogram, record
 from dem_cli.motion.record_file import read_series
 from dem_cli.motion.record_text import RecordError
-from dem_cli.motion.table import (
+from dem_cli.motion.units import SI_FACTORS, STANDARD_GRAVITY
+from dem_cli.tables.base_motion import (
     ArtificialTable,
     HarmonicTable,
     MotionTable,
@@ -23,7 +24,6 @@ from dem_cli.motion.table import (
     PulseTable,
     RecordTable,
 )
-from dem_cli.motion.units import SI_FACTORS, STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -81,7 +81,7 @@ def _suite(table: MotionTable, i_table: int, seed: int) -> list[Motion]:
     elif isinstance(table, ArtificialTable):
         from dem_cli.motion.synthetic import suite
 
-        shapes = [*suite(table, seed if table.seed is None else table.seed, i_table)]
+        shapes = [*suite(table.asked, seed if table.seed is None else table.seed, i_table)]
         titles, factor = [f"artificial {k}" for k in range(1, table.count + 1)], table.scale
     along = _unit(table.direction)
     motions = [Motion(shape, along, table.blocks, table.start, factor, title) for shape, title in zip(shapes, titles)]

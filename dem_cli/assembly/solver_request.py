@@ -47,7 +47,7 @@ def _joints(case: Case) -> JointRequest:
     materials = case.materials.values()
     uniform = [one.young if one.strains and not one.bends else math.inf for one in materials]
     return JointRequest(
-        dict(case.joints),
+        {name: table.alone for name, table in case.joints.items()},
         joint_table(case)[1],
         joints_in_heads(case),
         np.array([one.moduli for one in materials]),

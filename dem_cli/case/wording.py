@@ -11,6 +11,8 @@ import annotated_types as limits
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from dem_cli.declarations import show
+
 MOST_NAMES = 27  # names beyond this are not listed
 NUMBER_WORDS = {float: ("a number", "numbers"), int: ("an integer", "integers")}
 TEXT_WORDS = {str: ("a string", "strings"), bool: ("true or false", "true or false")}
@@ -125,20 +127,3 @@ def either(names: Sequence[Any]) -> str:
     """'a', 'b' or 'c'"""
     words = [show(name) for name in names]
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
-
-
-def show(value: Any) -> str:
-    """A value as it stands in the file, not longer than a glance."""
-    if isinstance(value, str):
-        text = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in f"'{value}'")
-    elif isinstance(value, bool):
-        text = "true" if value else "false"
-    elif isinstance(value, float):
-        text = f"{value:.12g}"
-    elif isinstance(value, dict):
-        text = "a table" if value else "an empty table"
-    elif isinstance(value, (list, tuple)):
-        text = f"[{', '.join(show(item) for item in value)}]"
-    else:
-        text = str(value)
-    return text if len(text) <= 60 else text[:57] + "..."

@@ -66,7 +66,6 @@ def command(case: str, overrides: Sequence[str], output: Path | None, as_json: b
 def groups_of(loaded: LoadedCase, compare: bool = True) -> list[RecordGroup]:
     """The records of every table. Raises UsageError for a case without motion, CaseError on a bad record."""
     from dem_cli.assembly.ground_motions import suites_of
-    from dem_cli.motion.eurocode_suites import clauses
     from dem_cli.motion.intensity_measures import fit
 
     tables = [table for table in loaded.case.motion if table.kind != "none"]
@@ -83,7 +82,7 @@ def groups_of(loaded: LoadedCase, compare: bool = True) -> list[RecordGroup]:
         if table.kind == "artificial":
             target = table.target.scaled(abs(table.scale))
             compared = fit(motions, target, table.first_period) if compare else None
-            judged = clauses(motions, table) if compare else ()
+            judged = table.judged(motions) if compare else ()
         groups.append(RecordGroup(motions, target, compared, getattr(table, "number", 1) - 1, judged))
     return groups
 

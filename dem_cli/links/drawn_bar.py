@@ -6,33 +6,32 @@ What holds them and how they act: links/bar.py.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
-from pydantic import Field
 
-from dem_cli.case.base import CaseModel, KeyProblem, Name, Positive, Vector
+from dem_cli.declarations import KeyProblem, Limits, Name, Parameters, Positive, SpaceVector, parameter
 
 FINE = 0.2  # μ l of elements by default
 
 
-class BarProfile(CaseModel):
+class BarProfile(Parameters):
     """[bars.NAME]: a kind of reinforcing bar: section, steel, bond."""
 
-    area: Positive = Field(description="cross-section; in 2D of all bars in the thickness [m2]", examples=[1.13e-4])
-    young: Positive = Field(description="Young's modulus [Pa]", examples=[2.0e11])
-    yield_stress: Positive | None = Field(
+    area: Positive = parameter(description="cross-section; in 2D of all bars in the thickness [m2]", examples=[1.13e-4])
+    young: Positive = parameter(description="Young's modulus [Pa]", examples=[2.0e11])
+    yield_stress: Positive | None = parameter(
         default=None,
         description="yield stress in tension and compression, perfectly plastic [Pa]; default: no limit",
         examples=[4.0e8],
     )
-    bond_stiffness: Positive = Field(
+    bond_stiffness: Positive = parameter(
         description="bond force per slip, per length of bar: N/m per m [Pa]", examples=[1.0e9]
     )
-    bond_strength: Positive | None = Field(
+    bond_strength: Positive | None = parameter(
         default=None, description="largest bond force per length of bar [N/m]; default: no limit", examples=[4.0e4]
     )
-    dowel_stiffness: Positive | None = Field(
+    dowel_stiffness: Positive | None = parameter(
         default=None,
         description="as bond_stiffness, across the bar, where a joint bends it [Pa]; default: bond_stiffness",
         examples=[1.0e9],
@@ -49,28 +48,29 @@ class BarProfile(CaseModel):
         return math.inf if self.yield_stress is None else self.yield_stress * self.area
 
 
-class Reinforcement(CaseModel):
+class Reinforcement(Parameters):
     """[[reinforcement]]: a bar along a polyline through blocks, held by bond in each.
 
     Its path lies in blocks as they were drawn; these take it along.
     """
 
-    id: Name | None = Field(default=None, description="name; default: bar-1, bar-2 ...", examples=["corner-1"])
-    bar: str = Field(description="a name in [bars]", examples=["rebar"])
-    path: Annotated[tuple[Vector, ...], Field(min_length=2)] = Field(
+    id: Name | None = parameter(default=None, description="name; default: bar-1, bar-2 ...", examples=["corner-1"])
+    bar: str = parameter(description="a name in [bars]", examples=["rebar"])
+    path: Annotated[tuple[SpaceVector, ...], Limits(min_length=2)] = parameter(
         description="corners of the line along which it runs, all in blocks [m]",
         examples=[[[0.1, 0.1], [0.1, 2.0]]],
     )
-    element: Positive | None = Field(
+    element: Positive | None = parameter(
         default=None, description="its elements are no longer than this [m]; default: 0.2 √(EA/bond_stiffness)",
         examples=[0.05],
     )  # fmt: skip
-    anchored: tuple[Literal["start", "end"], ...] = Field(
+    anchored: tuple[Literal["start", "end"], ...] = parameter(
         default=(), description="ends that do not slip, as with a hook or a plate: start, end", examples=[["start"]]
     )
 
-    def model_post_init(self, context: Any) -> None:
+    def check(self) -> None:
         """Raises KeyProblem where two corners are one point."""
+        super().check()
         for i, (a, b) in enumerate(zip(self.path, self.path[1:])):
             if len(a) == len(b) and math.dist(a, b) == 0.0:
                 raise KeyProblem("this corner is the one before it", "path", i + 1)

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from dem_cli.case.base import CaseModel
+from dem_cli.declarations import Parameters
 from dem_cli.kernels.jit import always_inline, inline, named
 
 FIXED_POINT = -1  # in place of a block: a point that moves with the base alone
@@ -131,7 +131,7 @@ class Link(NamedTuple):
 
     key: str  # [[key]] in the case file
     word: str  # what one is called, also without an id: word-1, word-2 ...
-    parameters: type[CaseModel]  # that table
+    parameters: type[Parameters]  # that table
     made: Callable[[Sequence[Any], Sequence[Any], np.ndarray], Any]  # (tables, as drawn, centroids) -> LinkArrays
     forces: dict[bool, Callable]  # where geometry is that of the start, and where it moves
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dem_cli.case.base import CaseModel
+from dem_cli.declarations import Parameters
 from dem_cli.links.link import Link
 from dem_cli.registration import Registered
 
 LINKS: Registered[Link] = Registered(
     {"tie": ("dem_cli.links.tie", "TIE"), "reinforcement": ("dem_cli.links.bar", "BAR")}
 )
-PROFILES: Registered[type[CaseModel]] = Registered(  # tables by name that links name
+PROFILES: Registered[type[Parameters]] = Registered(  # tables by name that links name
     {"bars": ("dem_cli.links.drawn_bar", "BarProfile")}
 )

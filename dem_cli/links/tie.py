@@ -13,10 +13,8 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from pydantic import Field, model_validator
 
-from dem_cli.case.base import CaseModel, KeyProblem, Name, NonNegative, Positive, Vector
-from dem_cli.case.wording import show
+from dem_cli.declarations import KeyProblem, Name, NonNegative, Parameters, Positive, SpaceVector, parameter, show
 from dem_cli.kernels.contact_point import push_apart
 from dem_cli.kernels.jit import inline, named
 from dem_cli.kernels.joint_plane import moment, sweep
@@ -37,50 +35,51 @@ from dem_cli.links.material_points import turned_arm
 from dem_cli.links.spans import Spans, spans
 
 
-class Tie(CaseModel):
+class Tie(Parameters):
     """[[tie]]: a rod or cable between points of two blocks, or from a block to a fixed point.
 
     Its ends are points of the structure as it was drawn; blocks take them along.
     """
 
-    id: Name | None = Field(default=None, description="name; default: tie-1, tie-2 ...", examples=["north"])
-    ends: tuple[Vector, Vector] = Field(
+    id: Name | None = parameter(default=None, description="name; default: tie-1, tie-2 ...", examples=["north"])
+    ends: tuple[SpaceVector, SpaceVector] = parameter(
         description="where it begins and ends, in or on its blocks as they were drawn [m]",
         examples=[[[0.1, 2.0], [3.9, 2.0]]],
     )
-    block: str | None = Field(
+    block: str | None = parameter(
         default=None,
         description="id of the block that holds its first end; default: the one in which that lies",
         examples=["left-3"],
     )
-    other: str | None = Field(
+    other: str | None = parameter(
         default=None,
         description="id of the block that holds its second end; default: the one in which that lies",
         examples=["right-3"],
     )
-    anchored: bool = Field(
+    anchored: bool = parameter(
         default=False,
         description="true: the second end is a fixed point, such as rock, which moves with the base alone",
         examples=[True],
     )
-    area: Positive | None = Field(default=None, description="cross-section [m2]", examples=[3.14e-4])
-    young: Positive | None = Field(default=None, description="Young's modulus, with area [Pa]", examples=[2.0e11])
-    stiffness: Positive | None = Field(
+    area: Positive | None = parameter(default=None, description="cross-section [m2]", examples=[3.14e-4])
+    young: Positive | None = parameter(default=None, description="Young's modulus, with area [Pa]", examples=[2.0e11])
+    stiffness: Positive | None = parameter(
         default=None, description="instead of area and young: force per elongation [N/m]", examples=[1e7]
     )
-    prestress: NonNegative = Field(default=0.0, description="its force as it was drawn, before any load [N]")
-    yield_force: Positive | None = Field(
+    prestress: NonNegative = parameter(default=0.0, description="its force as it was drawn, before any load [N]")
+    yield_force: Positive | None = parameter(
         default=None, description="largest force, perfectly plastic [N]; default: no limit", examples=[5e4]
     )
-    yield_stress: Positive | None = Field(
+    yield_stress: Positive | None = parameter(
         default=None, description="instead of yield_force, with area: largest stress [Pa]", examples=[2.35e8]
     )
-    compression: bool = Field(
+    compression: bool = parameter(
         default=False, description="true: a rod that also takes compression, up to the same limit", examples=[True]
     )
 
-    @model_validator(mode="after")
-    def _consistent(self) -> Tie:
+    def check(self) -> None:
+        """It has one stiffness, one limit, two ends, and a prestress below the limit."""
+        super().check()
         if self.stiffness is None and (self.area is None or self.young is None):
             missing = "area" if self.area is None else "young"
             raise KeyProblem("missing; a tie has area and young, or stiffness", missing)
@@ -100,7 +99,6 @@ class Tie(CaseModel):
             raise KeyProblem(message, "prestress")
         if math.dist(*self.ends) == 0.0:
             raise KeyProblem(f"{show(self.ends)} is not allowed; both ends are the same point", "ends")
-        return self
 
     @property
     def largest(self) -> float:

@@ -14,7 +14,6 @@ from typing import NamedTuple
 from dem_cli.motion.eurocode import TargetSpectrum
 from dem_cli.motion.intensity_measures import LEAST_MEAN, fit
 from dem_cli.motion.motion import Motion
-from dem_cli.motion.table import ArtificialTable
 
 FEWEST = 3  # (4)a
 STATIONARY = 10.0  # s: (3)
@@ -29,20 +28,28 @@ class Clause(NamedTuple):
     found: str  # in words
 
 
-def clauses(motions: Sequence[Motion], table: ArtificialTable) -> list[Clause]:
-    """What each clause says of the suite of a table, whose motions these are."""
+def clauses(
+    motions: Sequence[Motion],
+    plateau: float,
+    target: TargetSpectrum,
+    elastic: TargetSpectrum | None,
+    first_period: float | None = None,
+) -> list[Clause]:
+    """What each clause says of a suite of motions.
+
+    plateau: how long they stay strong [s]; target: the spectrum that they were made for, as strong as they are;
+    elastic: that for a damping of 5 %, None where it is not known; first_period: T1 of the structure [s].
+    """
     few = f"{len(motions)} record{'s' * (len(motions) != 1)}, at least {FEWEST} are asked for"
     found = [
-        Clause("(3)", table.plateau >= STATIONARY, f"strong for {table.plateau:g} s, {STATIONARY:g} s are asked for"),
+        Clause("(3)", plateau >= STATIONARY, f"strong for {plateau:g} s, {STATIONARY:g} s are asked for"),
         Clause("(4)a", len(motions) >= FEWEST, few),
     ]
-    target = _elastic(table)
-    if target is None:
-        ground = table.target.scaled(abs(table.scale))
-        mean = fit(motions, ground, table.first_period).mean_peak
-        unknown = f"the spectrum is for {100.0 * table.damping:g} %, that for {100.0 * DAMPING:g} % is not given"
+    if elastic is None:
+        mean = fit(motions, target, first_period).mean_peak
+        unknown = f"the spectrum is for {100.0 * target.damping:g} %, that for {100.0 * DAMPING:g} % is not given"
         return [*found, _peaks(mean), Clause("(4)c", None, unknown)]
-    compared = fit(motions, target, table.first_period)
+    compared = fit(motions, elastic, first_period)
     low, high = compared.periods[[0, -1]].tolist()
     least = f"the mean is {compared.least_mean:.3f} of the spectrum at least, {low:.3g} to {high:.3g} s, "
     least += f"{LEAST_MEAN:.2f} are asked for"
@@ -51,13 +58,6 @@ def clauses(motions: Sequence[Motion], table: ArtificialTable) -> list[Clause]:
 
 def _peaks(mean: float) -> Clause:
     return Clause("(4)b", mean >= 1.0 - 1e-9, f"mean peak {mean:.3f} of ag S, 1 is asked for")
-
-
-def _elastic(table: ArtificialTable) -> TargetSpectrum | None:
-    """The elastic spectrum for a damping of 5 %; None where the case has one for another damping alone."""
-    if not isinstance(table.spectrum, str) and table.damping != DAMPING:
-        return None
-    return table.model_copy(update={"damping": DAMPING}).target.scaled(abs(table.scale))
 
 
 def meets(found: Sequence[Clause]) -> bool | None:

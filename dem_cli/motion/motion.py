@@ -7,8 +7,6 @@ from typing import Protocol
 
 import numpy as np
 
-from dem_cli.case.base import Vector
-
 ENDS_MOVING = 0.02  # end velocity over the largest one: more than this deserves a word
 
 
@@ -44,7 +42,7 @@ class Motion:
     """
 
     shape: Waveform
-    direction: Vector = (1.0, 0.0)
+    direction: tuple[float, ...] = (1.0, 0.0)
     blocks: tuple[str, ...] = ()
     start: float = 0.0
     factor: float = 1.0

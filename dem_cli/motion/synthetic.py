@@ -8,7 +8,7 @@ spectrum. The scheme and its numbers: docs/motion.md.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,9 +18,6 @@ from dem_cli.arithmetic.small_matrices import inverse
 from dem_cli.motion.eurocode import TargetSpectrum
 from dem_cli.motion.record import Accelerogram, record
 from dem_cli.motion.spectrum import OscillatorFilter, oscillator, pseudo_accelerations
-
-if TYPE_CHECKING:
-    from dem_cli.motion.table import ArtificialTable
 
 Return = Callable[[np.ndarray], np.ndarray]  # of histories (..., n) to rest
 LOWEST_FREQUENCY, HIGHEST_FREQUENCY = 0.10, 35.0  # Hz: sines of the motion
@@ -33,13 +30,25 @@ WAVELET = 6.0  # time steps: period of the wavelet that raises a peak
 END_LEVEL = 0.05  # of the envelope at the end of the decay
 
 
-def suite(table: ArtificialTable, seed: int, stream: int = 0) -> list[Accelerogram]:
-    """`count` records; record i depends on (seed, stream, i) and on nothing else that is random."""
-    count = round(table.duration / table.time_step)
-    times = table.duration / count * np.arange(count + 1)
+class ArtificialSuite(NamedTuple):
+    """What a suite of artificial accelerograms is to be like."""
+
+    target: TargetSpectrum  # that their response spectra meet
+    duration: float = 20.0  # of each [s]
+    rise: float = 2.0  # how long it grows, with the square of time [s]
+    plateau: float = 10.0  # how long it stays strong [s]
+    time_step: float = 0.01  # between samples [s]
+    n_records: int = 1
+    iterations: int = 12  # corrections towards the target
+
+
+def suite(asked: ArtificialSuite, seed: int, stream: int = 0) -> list[Accelerogram]:
+    """`n_records` records; record i depends on (seed, stream, i) and on nothing else that is random."""
+    count = round(asked.duration / asked.time_step)
+    times = asked.duration / count * np.arange(count + 1)
     histories = accelerograms(
-        table.target, times, envelope(times, table.rise, table.plateau), table.iterations,
-        [np.random.default_rng([seed, stream, i]) for i in range(table.count)],
+        asked.target, times, envelope(times, asked.rise, asked.plateau), asked.iterations,
+        [np.random.default_rng([seed, stream, i]) for i in range(asked.n_records)],
     )  # fmt: skip
     return [record(times, history) for history in histories]
 

@@ -6,10 +6,11 @@ limits, descriptions and examples, whose instances are such records too.
 
 from __future__ import annotations
 
+from functools import cache
 from types import GenericAlias, UnionType
-from typing import Annotated, Any, Self, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Self, Union, get_args, get_origin
 
-from pydantic import AfterValidator, Field, create_model, model_validator
+from pydantic import Field, create_model, model_validator
 
 from dem_cli.case.base import CaseModel
 from dem_cli.case.vector import VectorLength
@@ -47,8 +48,7 @@ def table_of(declaring: type[Parameters]) -> type[Any]:
 
 
 def _made(declaring: type[Parameters]) -> type[Any]:
-    kinds = get_type_hints(declaring, include_extras=True)
-    fields: dict[str, Any] = {name: _field(kinds[name], one) for name, one in declaring.declared.items()}
+    fields: dict[str, Any] = {name: _field(one) for name, one in declaring.declared.items()}
     bases: Any = (DeclaredTable, declaring)
     return create_model(
         declaring.__name__,
@@ -59,15 +59,13 @@ def _made(declaring: type[Parameters]) -> type[Any]:
     )
 
 
-def _field(kind: Any, one: Parameter) -> tuple[Any, Any]:
+def _field(one: Parameter) -> tuple[Any, Any]:
     """Annotation and field of a parameter."""
-    kind = _in_a_case(kind)
-    if one.check is not None:
-        kind = Annotated[kind, AfterValidator(one.check)]
     options: dict[str, Any] = {**one.words, **one.limits.named}
-    return kind, Field(default=one.default, **options)
+    return _in_a_case(one.kind), Field(default=one.default, **options)
 
 
+@cache
 def _in_a_case(kind: Any) -> Any:
     """An annotated type as a case file has it: records become tables, vectors have as many numbers as the case."""
     origin, parts = get_origin(kind), get_args(kind)

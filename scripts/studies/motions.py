@@ -15,8 +15,8 @@ from dem_cli.motion.intensity_measures import fit
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.spectrum import response_spectrum
 from dem_cli.motion.synthetic import suite
-from dem_cli.motion.table import ArtificialTable
 from dem_cli.post.spectra import MotionSuite, draw_motions, draw_spectra
+from dem_cli.tables.base_motion import ArtificialTable
 from studies.places import DOCS
 from studies.study import StudyRunner
 from studies.template import table as markdown
@@ -27,7 +27,7 @@ OF_SEVEN, SUITES = 7, 8  # records of a suite, suites per ground type
 
 def suites(count: int = SUITES) -> str:
     """How suites of seven fit Eurocode 8, by spectrum and ground type."""
-    suite(ArtificialTable(spectrum="EC8-1", soil="A", ag=1.0), 0)  # imports
+    suite(ArtificialTable(spectrum="EC8-1", soil="A", ag=1.0).asked, 0)  # imports
     headings = ("spectrum", "ground", "damping", "suites that meet it", "lowest mean ratio", "mean ratio",
                 "scatter of records", "mean peak / (ag S)", "CPU per record")  # fmt: skip
     rows = []
@@ -35,7 +35,7 @@ def suites(count: int = SUITES) -> str:
     for kind, soil, damping in plan:
         table = ArtificialTable(spectrum=kind, soil=soil, ag=2.0, damping=damping, count=OF_SEVEN * count)
         started = time.process_time()
-        motions = [Motion(record) for record in suite(table, 1)]
+        motions = [Motion(record) for record in suite(table.asked, 1)]
         each = (time.process_time() - started) / len(motions)
         found = [fit(motions[i : i + OF_SEVEN], table.target) for i in range(0, len(motions), OF_SEVEN)]
         ratios = np.concatenate([one.ratios for one in found])
@@ -49,7 +49,7 @@ def suites(count: int = SUITES) -> str:
 
 def spectrum_errors() -> str:
     """Largest relative error of each spectrum over periods from 0.03 s to 4 s, against 40 times as many points."""
-    (record,) = suite(ArtificialTable(spectrum="EC8-1", soil="B", ag=2.0), 1)
+    (record,) = suite(ArtificialTable(spectrum="EC8-1", soil="B", ag=2.0).asked, 1)
     history, step, periods = record.acceleration(record.times), record.step, np.geomspace(0.03, 4.0, 40)
     exact = response_spectrum(history, step, periods, points=2400)
     rows = []
@@ -87,7 +87,7 @@ class MotionStudy(StudyRunner):
 
     def redraw(self) -> None:
         table = ArtificialTable(spectrum="EC8-1", soil="B", ag=2.0, count=OF_SEVEN)
-        motions = [Motion(record, name=f"artificial {i}") for i, record in enumerate(suite(table, 1), 1)]
+        motions = [Motion(record, name=f"artificial {i}") for i, record in enumerate(suite(table.asked, 1), 1)]
         made = [MotionSuite(motions, table.target)]
         draw_spectra(made, PAGE.with_name("motion_spectra.png"), "Suite of seven")
         draw_motions(made, PAGE.with_name("motion_records.png"), "Suite of seven")

@@ -25,8 +25,8 @@ try:
     main(sys.argv[1:])
 finally:
     kinds = {"dem_cli.structures.vaults.shapes", "dem_cli.structures.columns.column", "dem_cli.laws.barton"}
-    kinds |= {"numpy.f2py.crackfortran", "numpy.testing._private"}
-    print("LOADED", sorted({"numba", "scipy", "h5py", "matplotlib", "dem_cli.motion.table", *kinds} & set(sys.modules)))
+    kinds |= {"numpy.f2py.crackfortran", "numpy.testing._private", "dem_cli.tables.base_motion"}
+    print("LOADED", sorted({"numba", "scipy", "h5py", "matplotlib", *kinds} & set(sys.modules)))
 """
 
 

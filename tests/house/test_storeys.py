@@ -14,31 +14,9 @@ from parsed import nodes, tree
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 CORE = {"arithmetic", "code_checks", "contact", "dynamics", "engine", "geometry", "kernels", "laws", "limit", "links",
         "model", "motion", "records", "statics"}  # fmt: skip
-BELOW = {"errors", "frozen_records", "input_limits", "interrupts", "late_modules", "registration", "version"}
-LEFT = {  # arrows that still lead out: this list only gets shorter
-    ("laws/barton.py", "case.base"),
-    ("laws/cap.py", "case.base"),
-    ("laws/crushing.py", "case.base"),
-    ("laws/degrading.py", "case.base"),
-    ("laws/displacement_path.py", "case.base"),
-    ("laws/fracture.py", "case.base"),
-    ("laws/law.py", "case.base"),
-    ("laws/mixed.py", "case.base"),
-    ("laws/mohr_coulomb.py", "case.base"),
-    ("laws/profile.py", "case.base"),
-    ("laws/rate.py", "case.base"),
-    ("laws/softening.py", "case.base"),
-    ("laws/stiffness.py", "case.base"),
-    ("links/drawn_bar.py", "case.base"),
-    ("links/link.py", "case.base"),
-    ("links/registry.py", "case.base"),
-    ("links/tie.py", "case.base"),
-    ("links/tie.py", "case.wording"),
-    ("motion/motion.py", "case.base"),
-    ("motion/table.py", "case.base"),
-    ("motion/table.py", "case.named_file"),
-    ("motion/table.py", "tables.spectrum"),
-}
+BELOW = {"declarations", "errors", "frozen_records", "input_limits", "interrupts", "late_modules", "registration",
+         "version"}  # fmt: skip
+LEFT: set[tuple[str, str]] = set()  # arrows that still lead out: this list only gets shorter
 ABOVE = ("pydantic", "h5py", "click", "rich", "matplotlib")  # libraries of the other storeys
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.synthetic import suite
-from dem_cli.motion.table import ArtificialTable
+from dem_cli.tables.base_motion import ArtificialTable
 from studies.pulses import voussoirs
 from studies.pulses.domain import Shaker, changed, table_of
 
@@ -21,7 +21,7 @@ SUITE = {
 
 def study() -> dict[str, Any]:
     """Peaks of the crown against the base [m], by record, strength and damping; None: it fell."""
-    motions = [Motion(record) for record in suite(ArtificialTable(**SUITE), 1)]
+    motions = [Motion(record) for record in suite(ArtificialTable(**SUITE).asked, 1)]
     found: dict[str, Any] = {}
     for series, damping in (("s5", None), ("mx5", voussoirs.MAXWELL)):
         case = table_of(voussoirs.CASE)

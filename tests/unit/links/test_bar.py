@@ -13,6 +13,7 @@ from dem_cli.kernels.jit import kernel
 from dem_cli.links.bar import BAR, bars
 from dem_cli.links.drawn_bar import FINE, BarPiece, BarProfile, DrawnBar, Reinforcement
 from dem_cli.links.link import FORCE, PLASTIC, STRETCH, all_forces
+from dem_cli.tables.declared import table_of
 
 EA, KB, SB, LONG = 2.26e7, 1e9, 4e4, 0.6
 MU = math.sqrt(KB / EA)
@@ -29,7 +30,7 @@ class Placed(NamedTuple):
 
 
 def profile(**more) -> BarProfile:
-    return BarProfile.model_validate(
+    return table_of(BarProfile).model_validate(
         {"area": 1.13e-4, "young": 2e11, "bond_stiffness": KB, "bond_strength": SB, **more}
     )
 
@@ -275,4 +276,4 @@ WRONG = {
 def test_wrong_bars(name):
     keys, said = WRONG[name]
     with pytest.raises(ValueError, match=said):
-        Reinforcement.model_validate({"bar": "rebar", "path": [[0.0, 0.0], [1.0, 0.0]], **keys})
+        table_of(Reinforcement).model_validate({"bar": "rebar", "path": [[0.0, 0.0], [1.0, 0.0]], **keys})

@@ -12,6 +12,7 @@ from dem_cli.kernels.jit import kernel
 from dem_cli.links.link import FIXED_POINT, FORCE, PLASTIC, LinkEnds, all_forces
 from dem_cli.links.matrices import elastic_energy_of_links
 from dem_cli.links.tie import TIE, Tie, ties
+from dem_cli.tables.declared import table_of
 
 CENTROIDS = {2: np.array([[0.0, 0.0], [2.0, 1.0]]), 3: np.array([[0.0, 0.0, 0.2], [2.0, 1.0, -0.4]])}
 POINTS = {2: [[0.3, 0.2], [-0.4, 0.1]], 3: [[0.3, 0.2, -0.1], [-0.4, 0.1, 0.25]]}
@@ -30,7 +31,7 @@ LIKE = {2: ((0.0,) * 2, (0.0,)), 3: ((0.0,) * 3, (0.0,) * 3)}
 
 
 def tie(**more) -> Tie:
-    return Tie.model_validate({"ends": ((0.0, 0.0), (1.0, 1.0)), "stiffness": 1e5, **more})
+    return table_of(Tie).model_validate({"ends": ((0.0, 0.0), (1.0, 1.0)), "stiffness": 1e5, **more})
 
 
 def scene(dimension: int, anchored: bool, **more):

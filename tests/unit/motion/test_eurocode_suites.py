@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from dem_cli.motion.eurocode import eurocode
-from dem_cli.motion.eurocode_suites import clauses, meets, verdict
+from dem_cli.motion.eurocode_suites import meets, verdict
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.pulses import SineWave
 from dem_cli.motion.synthetic import suite
-from dem_cli.motion.table import ArtificialTable
+from dem_cli.tables.base_motion import ArtificialTable
 
 T1 = 0.5  # s
 
@@ -21,7 +21,7 @@ def table(**keys) -> ArtificialTable:
 
 
 def met(motions, made) -> dict:
-    return {clause.number: clause.met for clause in clauses(motions, made)}
+    return {clause.number: clause.met for clause in made.judged(motions)}
 
 
 def step(amplitude: float) -> Motion:
@@ -61,16 +61,16 @@ def test_a_listed_spectrum_for_another_damping_is_not_judged():
     points = ((0.0, 1.0), (4.0, 1.0))
     keys = {"spectrum": points, "soil": None, "ag": None}
     strong = [step(2.0)] * 3
-    assert meets(clauses(strong, table(**keys))) is True
-    found = clauses(strong, table(**keys, damping=0.02))
+    assert meets(table(**keys).judged(strong)) is True
+    found = table(**keys, damping=0.02).judged(strong)
     assert meets(found) is None
     assert "(4)c: the spectrum is for 2 %, that for 5 % is not given" in verdict(found)
 
 
 def test_words_of_a_suite_that_was_made_for_it():
     made = table(count=7)
-    found = clauses([Motion(one) for one in suite(made, 1)], made)
+    found = made.judged([Motion(one) for one in suite(made.asked, 1)])
     assert verdict(found) == "meets EN 1998-1 3.2.3.1.2 (3), (4)a, (4)b, (4)c"
-    fewer = clauses([Motion(one) for one in suite(made, 1)][:2], made)
+    fewer = made.judged([Motion(one) for one in suite(made.asked, 1)][:2])
     assert "DOES NOT MEET" in verdict(fewer)
     assert "(4)a: 2 records, at least 3 are asked for" in verdict(fewer)

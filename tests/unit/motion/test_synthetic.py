@@ -8,7 +8,7 @@ import pytest
 from dem_cli.motion.intensity_measures import fit
 from dem_cli.motion.motion import Motion
 from dem_cli.motion.synthetic import envelope, power_spectrum, suite
-from dem_cli.motion.table import ArtificialTable
+from dem_cli.tables.base_motion import ArtificialTable
 
 
 def table(**keys):
@@ -20,17 +20,17 @@ def histories(records):
 
 
 def test_a_record_depends_on_seed_and_number_only():
-    seven, two = histories(suite(table(count=7), 5)), histories(suite(table(count=2), 5))
+    seven, two = histories(suite(table(count=7).asked, 5)), histories(suite(table(count=2).asked, 5))
     assert np.abs(seven[:2] - two).max() < 1e-11  # rounding of products of matrices of another size
-    assert (histories(suite(table(count=2), 5)) == two).all()
-    assert np.abs(histories(suite(table(count=2), 6)) - two).max() > 1.0
-    assert np.abs(histories(suite(table(count=2), 5, stream=1)) - two).max() > 1.0
+    assert (histories(suite(table(count=2).asked, 5)) == two).all()
+    assert np.abs(histories(suite(table(count=2).asked, 6)) - two).max() > 1.0
+    assert np.abs(histories(suite(table(count=2).asked, 5, stream=1)) - two).max() > 1.0
     assert np.abs(two[0] - two[1]).max() > 1.0
 
 
 @pytest.mark.parametrize("keys", [{}, {"duration": 8.0, "plateau": 4.0, "rise": 1.0}, {"time_step": 0.02}])
 def test_from_rest_to_rest(keys):
-    for record in suite(table(count=3, **keys), 1):
+    for record in suite(table(count=3, **keys).asked, 1):
         end = np.array(record.duration)
         assert record.duration == keys.get("duration", 20.0)
         assert record.acceleration(np.array(0.0)) == 0.0
@@ -54,7 +54,7 @@ def test_from_rest_to_rest(keys):
 def test_suites_of_seven_meet_eurocode_8(keys):
     """EN 1998-1 3.2.3.1.2(4)b, c over all periods from 0.04 s to 4 s, and not by being too strong on the whole."""
     made = table(count=7, **keys)
-    motions = [Motion(record) for record in suite(made, 1)]
+    motions = [Motion(record) for record in suite(made.asked, 1)]
     found = fit(motions, made.target)
     assert found.meets
     assert found.mean_peak >= 1.0
@@ -65,7 +65,7 @@ def test_suites_of_seven_meet_eurocode_8(keys):
 def test_iterations_bring_the_spectrum_closer():
     def misfit(iterations):
         made = table(count=5, iterations=iterations)
-        found = fit([Motion(record) for record in suite(made, 2)], made.target)
+        found = fit([Motion(record) for record in suite(made.asked, 2)], made.target)
         return np.sqrt((np.log(found.ratios) ** 2).mean())
 
     none, some = misfit(0), misfit(12)
@@ -74,7 +74,7 @@ def test_iterations_bring_the_spectrum_closer():
 
 def test_every_peak_reaches_the_ground_acceleration():
     made = table(count=20)
-    assert min(record.peak for record in suite(made, 3)) >= made.target.ground * (1 - 1e-12)
+    assert min(record.peak for record in suite(made.asked, 3)) >= made.target.ground * (1 - 1e-12)
 
 
 def test_envelope():
@@ -104,5 +104,5 @@ def test_power_spectrum_gives_back_the_response_spectrum():
 
 def test_a_structure_of_known_period():
     made = table(count=3, first_period=0.5)
-    found = fit([Motion(record) for record in suite(made, 1)], made.target, made.first_period)
+    found = fit([Motion(record) for record in suite(made.asked, 1)], made.target, made.first_period)
     assert found.periods[[0, -1]] == pytest.approx([0.1, 1.0])

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
@@ -12,6 +13,11 @@ from dem_cli.case.named_file import absolute_path, is_file, missing_file
 from dem_cli.input_limits import LONGEST, MOST_CYCLES
 from dem_cli.motion.units import SI_FACTORS
 from dem_cli.tables.spectrum import SpectrumTable
+
+if TYPE_CHECKING:
+    from dem_cli.motion.eurocode_suites import Clause
+    from dem_cli.motion.motion import Motion
+    from dem_cli.motion.synthetic import ArtificialSuite
 
 Unit = Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m/s", "cm/s", "mm/s", "m", "cm", "mm"]
 PULSES = {"frequency": ("sine", "cosine", "half-sine", "ricker"), "duration": ("impulse",)}
@@ -222,6 +228,22 @@ class ArtificialTable(SpectrumTable, MotionTable):
         if self.duration / self.time_step > 200_000:
             raise KeyProblem(f"{self.time_step:g} s is not allowed; that makes more than 200,000 samples", "time_step")
         return self
+
+    @property
+    def asked(self) -> ArtificialSuite:
+        """What its accelerograms are to be like."""
+        from dem_cli.motion.synthetic import ArtificialSuite
+
+        times = (self.duration, self.rise, self.plateau, self.time_step)
+        return ArtificialSuite(self.target, *times, self.count, self.iterations)
+
+    def judged(self, motions: Sequence[Motion]) -> list[Clause]:
+        """What each clause of Eurocode 8 says of its motions."""
+        from dem_cli.motion.eurocode_suites import DAMPING, clauses
+
+        known, strength = isinstance(self.spectrum, str) or self.damping == DAMPING, abs(self.scale)
+        elastic = self.model_copy(update={"damping": DAMPING}).target.scaled(strength) if known else None
+        return clauses(motions, self.plateau, self.target.scaled(strength), elastic, self.first_period)
 
 
 class NoMotion(MotionTable):
