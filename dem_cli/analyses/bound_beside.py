@@ -20,7 +20,9 @@ from dem_cli.statics.failure_bracket import OK
 
 if TYPE_CHECKING:
     from dem_cli.engine.simulation import Simulation
+    from dem_cli.engine.state import SavedState
     from dem_cli.limit.analysis import LimitLoads
+    from dem_cli.model.model import Model
     from dem_cli.statics.failure_bracket import FailureLoad
 
 WIDEST = 0.1  # of the smallest edge: gaps between blocks that have moved, over which faces still touch at most
@@ -33,16 +35,25 @@ class Moved(NamedTuple):
     bound: float | None  # associated load of the geometry there; None: not known, or there is none
 
 
+class Carried(NamedTuple):
+    """An equilibrium under a live load, as FailureLoad has that of its highest one."""
+
+    load: float  # its multiplier
+    standing: SavedState
+    settled: float  # largest displacement of a block under the dead loads alone [m]
+
+
 class StartBound:
     """The associated load of the geometry of the start, found when first asked for.
 
-    why_not: why there is none, in words, once `loads` was asked for; None: there is one.
+    asked: whether the case asks for limit analysis, and with it for words where there is none. model: that of the job,
+    or one with other live loads. why_not: why there is none, in words, once `loads` was asked for; None: there is one.
     """
 
-    def __init__(self, job: CaseJob) -> None:
-        self.job = job
+    def __init__(self, job: CaseJob, model: Model | None = None) -> None:
+        self.job, self.model = job, job.model if model is None else model
         self.why_not: str | None = None
-        self.asked = bool(job.case.analysis.limit)
+        self.asked = bool(getattr(job.case.analysis, "limit", False))
 
     @cached_property
     def loads(self) -> LimitLoads | None:
@@ -51,7 +62,7 @@ class StartBound:
         job.clock.imported("dem_cli.limit.analysis")
         from dem_cli.limit.analysis import limit_loads, require_scalable, taken_as_plane
 
-        properties, law = joint_properties(job.request, job.model, job.stiffness("fixed")), law_of(job.request)
+        properties, law = joint_properties(job.request, self.model, job.stiffness("fixed")), law_of(job.request)
         note = taken_as_plane(properties)
         if note and self.asked:
             job.warnings.append(note)
@@ -61,8 +72,10 @@ class StartBound:
         job.clock.progress("limit analysis", 0.0, 0.0, None)
         try:
             if job.case.analysis.pattern == "tilt":
-                require_scalable(job.model, properties, law)
-            loads = limit_loads(job.model, properties, law, associated_only=not self.asked, settings=job.settings.limit)
+                require_scalable(self.model, properties, law)
+            loads = limit_loads(
+                self.model, properties, law, associated_only=not self.asked, settings=job.settings.limit
+            )
         except UsageError as error:
             self.why_not = str(error)
             if self.asked:
@@ -133,21 +146,53 @@ def beside(job: CaseJob, search: FailureLoad, sim: Simulation, start: StartBound
     return found | {"above_the_bound": told | {"explained": explained}}
 
 
+def beside_path(job: CaseJob, sim: Simulation, highest: Carried, lowest: Carried, resolution: float) -> dict[str, Any]:
+    """The same keys for a load that goes to and fro: of its highest multiplier, and of its lowest where that is < 0.
+
+    sim: that of the path; it is left as it was. resolution: of loads that are compared with their bounds.
+    """
+    found: dict[str, Any] = {}
+    limits: dict[str, Any] = {}
+    for key, sense, carried in (("associated", 1.0, highest), ("associated_back", -1.0, lowest)):
+        load, way = sense * carried.load, "" if sense > 0.0 else " against its direction"
+        if load <= 0.0:
+            continue
+        start = StartBound(job, job.model._replace(live_loads=sense * job.model.live_loads))
+        bound = None if start.loads is None else start.loads.associated.upper
+        if bound is None:
+            return {"no_bound": start.why_not}
+        limits[key] = sense * bound
+        if not is_above(load, bound, resolution):
+            continue
+        moved = _moved(job, carried, sim, sense)
+        explained = moved.bound is not None and not is_above(load, moved.bound, resolution)
+        job.warnings.append(in_words(load, bound, moved, explained, f"load {load:.5g}{way}"))
+        if found.get("above_the_bound", {"explained": True})["explained"]:  # one that nothing explains counts
+            told: dict[str, Any] = {"bound": sense * bound, "displacement": moved.displacement}
+            told |= {"bound_where_it_rests": None if moved.bound is None else sense * moved.bound}
+            found["above_the_bound"] = told | {"explained": explained}
+    return found | ({"limit_analysis": limits} if limits else {})
+
+
 def is_above(load: float, bound: float, resolution: float) -> bool:
     """Whether a load lies above its bound by more than the resolution."""
     return load - bound > resolution * abs(bound)
 
 
-def in_words(load: float, bound: float, moved: Moved, explained: bool) -> str:
-    """The warning for a load above its bound; explained: by how far blocks had moved."""
+def in_words(load: float, bound: float, moved: Moved, explained: bool, named: str = "") -> str:
+    """The warning for a load above its bound; explained: by how far blocks had moved.
+
+    named: what load it is, with its value; default: the failure load.
+    """
+    named = named or f"failure load {load:.5g}"
     if explained:
         return (
-            f"the failure load {load:.5g} lies above {bound:.5g}, which the geometry of the start can carry at most: "
+            f"the {named} lies above {bound:.5g}, which the geometry of the start can carry at most: "
             f"it is that of blocks that have moved by {moved.displacement:.3g} m"
         )
     there = "" if moved.bound is None else f" ({moved.bound:.5g} where blocks had moved by {moved.displacement:.3g} m)"
     return (
-        f"the failure load {load:.5g} lies above {bound:.5g}, which no structure of this geometry can carry{there}: "
+        f"the {named} lies above {bound:.5g}, which no structure of this geometry can carry{there}: "
         "do not trust this run"
     )
 
@@ -171,29 +216,34 @@ def _clamped(job: CaseJob, search: FailureLoad, bound: float) -> list[str]:
     ]
 
 
-def _moved(job: CaseJob, search: FailureLoad, sim: Simulation) -> Moved:
-    """How far blocks had moved in the highest equilibrium, and what limit analysis says of the geometry there."""
+def _moved(job: CaseJob, search: FailureLoad | Carried, sim: Simulation, sense: float = 1.0) -> Moved:
+    """How far blocks had moved in the highest equilibrium, and what limit analysis says of the geometry there.
+
+    sense: 1 or −1, by which live loads are multiplied.
+    """
     end = sim.save()
     sim.restore(search.standing)
     try:
         displacement = max(measures.largest_displacement(sim) - search.settled, 0.0)
-        return Moved(displacement, _bound_there(job, sim, displacement))
+        return Moved(displacement, _bound_there(job, sim, displacement, sense))
     except UsageError:
         return Moved(displacement, None)
     finally:
         sim.restore(end)
 
 
-def _bound_there(job: CaseJob, sim: Simulation, displacement: float) -> float | None:
+def _bound_there(job: CaseJob, sim: Simulation, displacement: float, sense: float) -> float | None:
     """The associated load of the blocks of a simulation where they are, on faces as drawn; with fixed geometry on the
-    joints of the start with the gaps that have closed since. displacement: how far they have moved [m].
+    joints of the start with the gaps that have closed since. displacement: how far they have moved [m]; sense: as in
+    `_moved`.
     """
     from dem_cli.limit.analysis import load_of_points, load_where_it_rests
 
     settings, law = job.settings.limit, sim.law
     if sim.kinematics == "fixed":
-        return load_of_points(sim.model, sim.joints, sim.measured().gaps <= 0.0, law, settings).upper
+        model = sim.model._replace(live_loads=sense * sim.model.live_loads)
+        return load_of_points(model, sim.joints, sim.measured().gaps <= 0.0, law, settings).upper
     dead, live = sim.present_loads()
-    model = sim.model._replace(dead_loads=dead, live_loads=live)
+    model = sim.model._replace(dead_loads=dead, live_loads=sense * live)
     touch = 2.0 * measures.largest_overlap(sim), min(WIDEST * sim.smallest, 10.0 * displacement)
     return load_where_it_rests(model, sim.properties, law, sim.bodies, touch, settings).upper

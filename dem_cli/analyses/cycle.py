@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.analyses.bound_beside import Carried, beside_path, status_beside
 from dem_cli.analyses.curve_tracing import followed
 from dem_cli.dynamics.stability import buckles, standing
 from dem_cli.engine import measures
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 FAILS = "fails on the way"
+RESOLUTION = 0.002  # of a load that is compared with its bound, as that of a pushover
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
@@ -46,6 +48,8 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
                 path.walk()
             finally:
                 found |= path.found
+            found |= beside_path(job, sim, path.highest, path.lowest, RESOLUTION)
+            found["status"] = status_beside(found["status"], found)
     except SolverError as error:
         found["status"] = "not converged"
         job.warnings.append(str(error))
@@ -62,7 +66,7 @@ def values_between(start: float, end: float, step: float) -> np.ndarray:
 class LoadPath:
     """The path of a case: every value of it, after each of whose steps all forces balance.
 
-    found: keys of the summary, as far as it has come.
+    found: keys of the summary, as far as it has come; highest, lowest: equilibria with the largest and the least load.
     """
 
     LASTING = frozenset(("sim", "job", "track", "way"))
@@ -74,6 +78,7 @@ class LoadPath:
         self.turn, self.steps = 0, 0  # turning points that were reached, steps since the last of them
         self.at_rest = measures.live_travel(self.sim)
         self.states, self.turns = [state_of(self.sim, self.at_rest)], [0]
+        self.highest = self.lowest = Carried(0.0, self.sim.save(), measures.largest_displacement(self.sim))
 
     @stage
     def walk(self) -> None:
@@ -101,6 +106,11 @@ class LoadPath:
             return False
         track.write("loading")
         self.states.append(state_of(sim, self.at_rest))
+        load = self.states[-1].load
+        if load > self.highest.load:
+            self.highest = self.highest._replace(load=load, standing=sim.save())
+        elif load < self.lowest.load:
+            self.lowest = self.lowest._replace(load=load, standing=sim.save())
         return True
 
     def _turn(self, target: float) -> None:

@@ -18,12 +18,13 @@ from dem_cli.ensembles import bisection
 from dem_cli.ensembles.bisection import Ends
 from dem_cli.ensembles.shaken_run import ProgressOnly
 from dem_cli.ensembles.static_bound import Bound, bound
-from dem_cli.ensembles.static_run import StaticRun, decide, fall
+from dem_cli.ensembles.static_run import StaticRun, decide, fall, moved_into_it
 from dem_cli.ensembles.static_values import changed, checked_model, load_doubts, scale_of, weaker
 from dem_cli.errors import CaseError
 from dem_cli.laws.strength import strengths
 from dem_cli.model.model import Model
 from dem_cli.records.ports import Observer
+from dem_cli.records.statuses import ABOVE
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -51,13 +52,15 @@ class SafetyStudy:
         self.answers: dict[float, bool] = {}
         self.undecided: set[float] = set()  # values at which neither equilibrium nor failure was proven
         self.warnings: list[str] = []
+        self.above: dict[str, Any] = {}  # `above_the_bound` of the summary; empty: it is not
         self.steps, self.closure = 0, 0.0
-        self.known: Bound | str | None = None  # what limit analysis says
+        self.known: Bound | str | None = None  # what limit analysis says of the geometry of the start
+        self.moving = ""  # why geometry moves, where the case does not ask for it: then that is no guess, but a bound
 
     def run(self) -> Outcome:
         """Limit analysis where it can tell, then the runs, then what is to be seen of them."""
         known = self.known = self._bound()
-        guess = Ends(known.carried, known.impossible) if isinstance(known, Bound) else None
+        guess = Ends(known.carried, known.impossible) if isinstance(known, Bound) and not self.moving else None
         start = min(max(1.0, self.scale.low), self.scale.high) if self.analysis.of_strength else None
         status = "ok"
         try:
@@ -72,7 +75,8 @@ class SafetyStudy:
             ends = self._nearest()
         if status == "ok" and None in ends:
             status = self._nowhere(ends)
-        self._check(ends)
+        if not self._check(ends) and status == "ok":
+            status = ABOVE
         self._show(ends, 0.0 if status == INTERRUPTED else self.analysis.follow)
         return Outcome(self._answer(status, ends) | self._facts(ends))
 
@@ -96,7 +100,7 @@ class SafetyStudy:
         self.observer.progress(text, math.nan, math.nan, None)
         try:
             case, model = self.variant(value)
-            hopeless = self._past(value) >= 0.0
+            hopeless = not self.moving and self._past(value) >= 0.0
             run = decide(case, model, ProgressOnly(self.observer, self.observer.stages), value, hopeless, self.settings)
         except CaseError as error:  # both ends of the range are possible
             self._give_up(value, str(error))
@@ -128,9 +132,7 @@ class SafetyStudy:
     def _bound(self) -> Bound | str | None:
         if not self.analysis.limit:
             return None
-        moving = why_moving(solver_request(self.case), self.model)
-        if moving:
-            return f"not tried: {moving}"
+        self.moving = why_moving(solver_request(self.case), self.model) or ""
         self.observer.progress("limit analysis", 0.0, 0.0, None)
         return bound(self.variant, self.scale, self.analysis.resolution, self.settings)
 
@@ -154,8 +156,12 @@ class SafetyStudy:
             return -math.inf
         return (value - self.known.impossible) * math.copysign(1.0, self.known.impossible - self.known.carried)
 
-    def _check(self, ends: Ends) -> None:
-        """Words about a structure that does not stand as it is, and about answers that contradict each other."""
+    def _check(self, ends: Ends) -> bool:
+        """Words about a structure that does not stand as it is, and about answers that contradict each other.
+
+        False: it stands where limit analysis proves that nothing can, and nothing explains that.
+        """
+        possible = True
         doubts = self.settings.doubts
         if self.analysis.of_strength and ends.fails is not None and ends.fails <= 1.0:
             self.warnings.append("it does not stand as it is: it fails at F = 1, with the strengths of the case")
@@ -167,18 +173,23 @@ class SafetyStudy:
         if isinstance(self.known, Bound) and ends.stands is not None:
             impossible = self.known.impossible
             if self._past(ends.stands) > doubts.beyond * abs(impossible):
-                self.warnings.append(
-                    f"it stands at {self._named(ends.stands)}, where limit analysis proves that nothing can "
-                    f"({impossible:.5g} and beyond): do not trust this run"
-                )
+                run = self.nearest_runs[ends.stands]
+                possible = moved_into_it(run)
+                above = f"it stands at {self._named(ends.stands)}, where limit analysis proves that nothing can "
+                above += f"in the geometry of the start ({impossible:.5g} and beyond): "
+                moved = f"its blocks have moved by {run.result.displacement:.3g} m" if possible else ""
+                self.warnings.append(above + (moved or "do not trust this run"))
+                self.above = {"bound": impossible, "displacement": run.result.displacement}
+                self.above |= {"bound_where_it_rests": None, "explained": possible}
         if abs(self.closure) > doubts.closure:
             self.warnings.append(f"the energy does not close: {self.closure:.2%} is missing; do not trust this run")
+        return possible
 
     def _answer(self, status: str, ends: Ends) -> dict[str, Any]:
         bracket = sorted(end for end in ends if end is not None) if None not in ends else None
         of_strength = self.analysis.of_strength
         name = "safety_factor" if of_strength else "critical_value"
-        found = ends.stands if status == "ok" else None
+        found = ends.stands if status in ("ok", ABOVE) else None
         answer: dict[str, Any] = {"status": status, "vary": self.analysis.vary}
         answer |= {name: found, f"{name}_bracket": bracket, "stands_at": ends.stands, "fails_at": ends.fails}
         if of_strength:
@@ -195,6 +206,8 @@ class SafetyStudy:
         answer["load"] = self.analysis.constant_load
         if self.known is not None:
             answer["limit_analysis"] = self.known.summary() if isinstance(self.known, Bound) else {"note": self.known}
+        if self.above:
+            answer["above_the_bound"] = self.above
         answer["runs"] = self.runs
         return answer
 

@@ -95,15 +95,16 @@ def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProbl
 
 
 def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
-    """Monitors of reactions and of forces in cuts where blocks have real masses: samples of a motion hold no forces."""
+    """Monitors of reactions where blocks have real masses, as samples of a motion hold none; in modes of cuts too."""
     if kind not in WITH_REAL_MASSES:
         return []
+    refused = REACTIONS if kind in SHAKES else (*REACTIONS, *OF_CUTS)
     asked = [(path, table.get("quantity")) for path, table in entries(data, "monitor")]
     message = f"is not known in kind = {show(kind)}: only analyses without time follow such forces"
     return [
         CaseProblem((*path, "quantity"), f"{show(quantity)} {message}")
         for path, quantity in asked
-        if quantity in (*REACTIONS, *OF_CUTS)
+        if quantity in refused
     ]
 
 

@@ -194,7 +194,7 @@ class Monitor(Selection):
         "of a tie: force [N], tension positive, or elongation [m] since it was drawn; of a bar: force, or slip [m] "
         "along it against its block; of blocks that are fixed or have a [[restraint]], in analyses without time: "
         "reaction [N], what holds them gives to all of them together, or its reaction_moment [N m] about their common "
-        "centroid, where that is then; of a cut, in analyses without time, what the part beyond it gives to the other: "
+        "centroid, where that is then; of a cut, but in modes, what the part beyond it gives to the other: "
         "normal_force [N], compression positive, shear_force [N] along the line or first side, and moment [N m], "
         "positive where it presses the end of the line: normal force times eccentricity; in 3D also "
         "shear_force_across and moment_across, along the normal × the first side, and torsion about the normal; of a "

@@ -57,6 +57,23 @@ class Extremes:
         self.overlap, self.impacts = max(self.overlap, stretch.overlap), self.impacts + stretch.impacts
 
 
+class CutReader:
+    """Forces in cuts at the samples of a stretch: read in the step of each, as samples of motion hold none.
+
+    first: step of the stretch at which the first sample is due; every: steps from one to the next.
+    """
+
+    def __init__(self, sim: DynamicSimulation, monitors: Monitors, first: int, every: int) -> None:
+        self.sim, self.monitors, self.every = sim, monitors, every
+        self.due = first + 1
+        self.rows: list[list[float]] = []
+
+    def look(self) -> None:
+        """At the end of a step."""
+        self.rows.append(self.monitors.in_cuts(self.sim))
+        self.due += self.every
+
+
 def shaken_on(
     sim: DynamicSimulation,
     ground: GroundMotion,
@@ -85,10 +102,13 @@ def shaken_on(
         times, base = ground.sampled(first, n, every, dt)
     else:
         times, base = dt * (first + every * np.arange(n)), np.zeros((n, 3, sim.model.dimension))
-    sim.shake(ground.stretch(start, since + n_steps, dt), n_steps, watch, since, looker)
+    reader = CutReader(sim, monitors, every * new, every) if monitors.columns_of_cuts else None
+    sim.shake(ground.stretch(start, since + n_steps, dt), n_steps, watch, since, looker, reader)
     values = np.zeros((0, len(monitors.requests)))
     if n_samples > new:
         values = monitors.series(watch.samples[new:], base, watch.links[new:])
+        if reader is not None:
+            values[:, monitors.columns_of_cuts] = reader.rows
     overlap = max(0.0, -float(gauges.tally[slot.LEAST_GAP]))
     extremes = monitors.extremes(gauges, times, values, start, dt)
     moved = largest_displacement(sim) >= sim.settings.history.noticeable * sim.smallest

@@ -17,6 +17,7 @@ from dem_cli.engine.simulation import Simulation
 from dem_cli.engine.state import NO_CARRIERS, Books, Carriers
 from dem_cli.engine.viscous import Damping, strain_rates, turned_loads
 from dem_cli.geometry.inertia import along_principal, gyration, mobilities
+from dem_cli.geometry.rotation import along_frames
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.dashpots import OPEN, STARTS, STICKS
@@ -183,6 +184,20 @@ class DynamicSimulation(Simulation):
         weights = 1.0 / self.loads.force_scales[:, 0]
         return np.where(self.model.fixed, np.inf, self.settings.history.trifle * weights * self.dt)
 
+    def forces_on_second(self) -> np.ndarray:
+        """In a motion those of the last step, in its frames, with the mean of dashpots over it and Maxwell elements."""
+        if not self.real:
+            return super().forces_on_second()
+        contacts, d = self.contacts, self.model.dimension
+        forces = np.column_stack([contacts.normal, contacts.shear])
+        if self.damping.in_joints:
+            first, memory = self.dampers.first, contacts.memory
+            forces += memory[:, first : first + d] / self.dt
+            for element in range(len(self.damping.elements)):
+                column = first + d * (element + 1)
+                forces += memory[:, column : column + d]
+        return along_frames(self.joints.frames, forces)
+
     def _decays(self) -> np.ndarray:
         """What Maxwell elements keep of their force over a step at constant rates, and gain, as Dampers.elements."""
         if not len(self.damping.elements):
@@ -201,11 +216,20 @@ class DynamicSimulation(Simulation):
         self._run(0, 0, self._still(0), no_watch(self))
         self.control[:] = control
 
-    def shake(self, ground: Ground, n_steps: int, watch: Watch, first: int = 0, looker: Looker | None = None) -> None:
+    def shake(
+        self,
+        ground: Ground,
+        n_steps: int,
+        watch: Watch,
+        first: int = 0,
+        looker: Looker | None = None,
+        reader: Looker | None = None,
+    ) -> None:
         """n_steps steps over a stretch of ground motion, from its step `first`, with detection when it is due.
 
         The books are closed in the middle of the last step, where places, velocities and forces are of one time; looks
-        along the way change no bit. Raises KeyboardInterrupt.
+        along the way change no bit. reader: who looks at the forces of a step, before faces are found anew; its steps
+        are those of the stretch. Raises KeyboardInterrupt.
         """
         step, end = first, first + n_steps
         done = round(self.time / self.dt) - first  # steps before that of number 0
@@ -220,8 +244,12 @@ class DynamicSimulation(Simulation):
                 n = min(n, self.settings.relaxation.follow_every)
             if looker is not None:
                 n = min(n, max(looker.due - done - step, 1))
+            if reader is not None:
+                n = min(n, max(reader.due - step, 1))
             advanced = self._run(step, n, ground, watch)
             step += advanced
+            if reader is not None and step >= reader.due:
+                reader.look()
             if last:
                 self.centred = 0.5 * (before + self.ledger)
                 self.centred[slot.FRICTION] = self.ledger[slot.FRICTION]

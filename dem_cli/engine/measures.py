@@ -11,7 +11,7 @@ from dem_cli.contact.block_compliance import BlockCompliance
 from dem_cli.contact.corner_forces import at_corners
 from dem_cli.contact.joints import points_in_use
 from dem_cli.engine.simulation import Simulation
-from dem_cli.geometry.rotation import frames, quaternions, rotation_vectors, turned_since, turning
+from dem_cli.geometry.rotation import quaternions, rotation_vectors, turned_since, turning
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.records import Bodies, Contacts, Joints, MovingJoints
 from dem_cli.links.link import FIXED_POINT
@@ -254,8 +254,10 @@ def contact_points(sim: Simulation, blocks: np.ndarray) -> np.ndarray:
 
 
 def point_pushes(sim: Simulation) -> PointPushes:
-    """Forces of all contact points now, where the kernels let them act."""
-    joints, contacts, model = sim.joints, sim.measured(), sim.model
+    """Forces of all contact points now, in a motion those of its last step, where the kernels let them act."""
+    on_second = sim.forces_on_second()  # before frames follow the blocks beyond the step
+    sim.measured()
+    joints, model = sim.joints, sim.model
     used, owner = points_in_use(joints), joints.owners
     first = joints.blocks[owner, 0]
     places = joints.points + sim.origin
@@ -265,11 +267,9 @@ def point_pushes(sim: Simulation) -> PointPushes:
         drawn = model.centroids[first] + turning(-rotation_vectors(sim.bodies.orientations)[first])(arms)
     counts = np.maximum(np.bincount(owner[used], minlength=len(joints.blocks)), 1)
     middles = np.column_stack([np.bincount(owner[used], along, len(counts)) for along in drawn[used].T])
-    axes = frames(joints.frames, model.dimension)
-    forces = np.column_stack([contacts.normal, contacts.shear])
     return PointPushes(
         joints.blocks[owner][used], places[used], (middles / counts[:, None])[owner][used],
-        (forces[:, :, None] * axes).sum(axis=1)[used],
+        on_second[used],
     )  # fmt: skip
 
 

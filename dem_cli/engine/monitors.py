@@ -221,11 +221,20 @@ class Monitors:
         found = self.series(sample[np.newaxis], still, links[np.newaxis])[0]
         for monitor in self._of_reactions:
             found[monitor.column] = monitor.value(sim)
-        given = point_pushes(sim) if self._of_cuts else None
-        for cut in self._of_cuts:
-            assert given is not None
-            found[cut.column] = cut.value(sim, given)
+        found[self.columns_of_cuts] = self.in_cuts(sim)
         return tuple(found.tolist())
+
+    @property
+    def columns_of_cuts(self) -> list[int]:
+        """Numbers of the monitors of forces in cuts."""
+        return [cut.column for cut in self._of_cuts]
+
+    def in_cuts(self, sim: Simulation) -> list[float]:
+        """Forces in cuts now, in a motion those of its last step [N or N m], in the order of their columns."""
+        if not self._of_cuts:
+            return []
+        given = point_pushes(sim)
+        return [cut.value(sim, given) for cut in self._of_cuts]
 
     def _strain(self, sim: Simulation) -> None:
         """Takes the points where the strains of their blocks have them at this instant."""

@@ -20,7 +20,7 @@ from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.engine.state import Books, SavedState
 from dem_cli.engine.threads.crew import called_by_all, threads_wanted
 from dem_cli.engine.tracking import Gauge, JointTracking
-from dem_cli.geometry.rotation import rotation_vectors
+from dem_cli.geometry.rotation import along_frames, rotation_vectors
 from dem_cli.interrupts import look
 from dem_cli.kernels import records as slot
 from dem_cli.kernels.fixed_joints import FixedJoints
@@ -153,6 +153,11 @@ class Simulation:
             if self.tracking.due(self.bodies):
                 self.detect()
             self.control[slot.TRAVEL_LIMIT] = self.tracking.farthest
+
+    def forces_on_second(self) -> np.ndarray:
+        """Forces of all contact points on the second block of their joint [N], (n_points, d)."""
+        contacts = self.measured()
+        return along_frames(self.joints.frames, np.column_stack([contacts.normal, contacts.shear]))
 
     def measured(self) -> Contacts:
         """Contacts with the gaps of this instant; frames, levers and points of the joints follow, nothing else."""

@@ -12,13 +12,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from dem_cli.assembly.solver_request import solver_request
+from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.bisection import Scale
 from dem_cli.errors import CaseError, UsageError
+from dem_cli.model.scales import smallest_edge
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
+    from dem_cli.kernels.records import Bodies
     from dem_cli.limit.matrices import Structure
     from dem_cli.model.model import Model
 
@@ -78,13 +81,35 @@ def stands(case: Case, model: Model, settings: Settings = DEFAULT) -> bool | Non
 
     Raises UsageError where the law has no cone |T| ≤ μ N.
     """
+    return _carries(case, model, None, TOUCHING_GAP, settings)
+
+
+def stands_where_it_rests(
+    case: Case, model: Model, bodies: Bodies, touch: tuple[float, float], settings: Settings = DEFAULT
+) -> bool | None:
+    """The same for blocks that have moved to `bodies`; touch: gaps or overlaps of faces that touch [m].
+
+    Blocks that have turned touch with corners: faces count up to the smallest gap with which forces are found. Raises
+    UsageError as `stands`.
+    """
+    smallest = smallest_edge(model)
+    near, most = (max(TOUCHING_GAP, reach / smallest) for reach in touch)
+    while True:
+        found = _carries(case, model, bodies, near, settings)
+        if found or near >= most:
+            return found
+        near = min(10.0 * near, most)
+
+
+def _carries(case: Case, model: Model, bodies: Bodies | None, near: float, settings: Settings) -> bool | None:
     from dem_cli.laws.envelope import frictional
     from dem_cli.limit.analysis import start_structure
     from dem_cli.limit.associated import carried
     from dem_cli.limit.cone import friction_of
 
     request = solver_request(case)
-    structure = start_structure(model, joint_properties(request, model, settings.stiffness.statics))
+    properties = joint_properties(request, model, settings.stiffness.statics)
+    structure = start_structure(model, properties, bodies=bodies, near=near)
     if not structure.dead.any():
         return True  # nothing to carry
     friction = friction_of(structure.joints, law_of(request))

@@ -9,7 +9,8 @@ from dem_cli.engine import measures
 from dem_cli.engine.measures import closure
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.case_job import CaseJob
-from dem_cli.errors import SolverError
+from dem_cli.ensembles.static_bound import stands_where_it_rests
+from dem_cli.errors import SolverError, UsageError
 from dem_cli.records.frames import Frame
 from dem_cli.records.history_rows import HistoryRow
 from dem_cli.records.ports import Observer
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from dem_cli.engine.state import SavedState
     from dem_cli.engine.track import Track
     from dem_cli.model.model import Model
+
+WIDEST = 0.1  # of the smallest edge: gaps between blocks that have moved, over which faces still touch at most
 
 
 class StaticRunResult(NamedTuple):
@@ -189,6 +192,18 @@ def _proof(verdict: Verdict, share: float, load: float) -> str:
         return f"'{verdict.block}' came to rest elsewhere{where}"
     under = " under its dead loads alone" if load > 0.0 and share == 0.0 else where
     return f"moves on and releases energy{under}: {100.0 * verdict.released:.2g} % of the work of the loads"
+
+
+def moved_into_it(run: StaticRun) -> bool:
+    """Whether limit analysis finds forces that carry the loads of a run that stands, where its blocks have moved to."""
+    sim, moved = run.sim, run.result.displacement
+    if sim.kinematics == "fixed":
+        return False
+    touch = 2.0 * measures.largest_overlap(sim), min(WIDEST * sim.smallest, 10.0 * moved)
+    try:
+        return bool(stands_where_it_rests(run.case, run.model, sim.bodies, touch, run.job.settings))
+    except UsageError:
+        return False
 
 
 def fall(run: StaticRun, observer: Observer, until: float, frames: int) -> str | None:

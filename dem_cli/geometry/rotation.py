@@ -84,6 +84,12 @@ def frames(stored: np.ndarray, dimension: int) -> np.ndarray:
     return stored.reshape(-1, dimension, dimension)
 
 
+def along_frames(stored: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Vectors (n, d) from their values along the normals and tangents of frames (n, d·d), (n, d)."""
+    total: np.ndarray = (values[:, :, None] * frames(stored, values.shape[1])).sum(axis=1)
+    return total
+
+
 def tangents_of(normals: np.ndarray, first: np.ndarray) -> list[np.ndarray]:
     """Tangents, d − 1 of (n, d): in the plane normals turned by +90°, in space the first ones and normal × first."""
     return [across(normals)] if normals.shape[1] == 2 else [first, np.cross(normals, first)]

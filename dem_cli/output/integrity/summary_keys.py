@@ -157,6 +157,7 @@ class FoundLimits(SummaryTable):
     """limit_analysis."""
 
     associated: Maybe = None
+    associated_back: Maybe = None
     associated_bounds: Range | None = None
     associated_status: str | None = None
     associated_head_friction: Maybe = None
