@@ -92,6 +92,8 @@ ALLOWED: dict[str, set[str] | None] = {
     "ensembles": {
         "geometry",
         "assembly",
+        "contact.start",
+        "kernels.records",
         "case.schema",
         "case.variation",
         "dynamics",

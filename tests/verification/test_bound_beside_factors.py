@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from dem_cli.records.statuses import ABOVE
 from engine import block, rectangle, solve, tables
 
 from dem_cli.ensembles.static_bound import Bound
 from dem_cli.output.summary import exit_code
+from dem_cli.records.statuses import ABOVE
 
 BASE = block("base", rectangle(-2, -1, 4, 0), fixed=True)
 SAFETY = {"kind": "safety", "load": 0.2, "direction": [1.0, 0.0]}

@@ -5,9 +5,9 @@ from __future__ import annotations
 import engine
 import numpy as np
 import pytest
-from dem_cli.motion.ground_motions import motions_of
 from engine import block, rectangle, tables
 
+from dem_cli.assembly.ground_motions import motions_of
 from dem_cli.ensembles.shaken_run import RestedStructure
 from dem_cli.ensembles.variants import Variant
 from dem_cli.errors import CaseError

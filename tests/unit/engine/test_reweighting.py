@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from engine import block, rectangle, scene, simulation, tables
 
+from dem_cli.assembly.solver_request import solver_request
 from dem_cli.engine import audit, measures
 
 GROUND = block("ground", rectangle(-3, -1, 6, 0), fixed=True)
@@ -48,7 +49,11 @@ def test_a_detection_keeps_it(sim):
 def test_from_where_on_a_run_says_so(sim, amounts, said):
     sim.most_kinetic = 10.0
     sim.contacts.exchanged[:] = 10.0 * np.array(amounts)
-    found = [text for text in audit.warnings(scene(CASE).case, [sim], {}) if "areas of contact points" in text]
+    found = [
+        text
+        for text in audit.warnings(solver_request(scene(CASE).case), [sim], {})
+        if "areas of contact points" in text
+    ]
     assert [said in text for text in found] == ([] if said is None else [True])
 
 
