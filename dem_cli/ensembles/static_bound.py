@@ -12,16 +12,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from dem_cli.assembly.solver_request import solver_request
-from dem_cli.contact.start import TOUCHING_GAP
 from dem_cli.engine.properties import joint_properties, law_of
 from dem_cli.engine.settings import DEFAULT, Settings
 from dem_cli.ensembles.bisection import Scale
 from dem_cli.errors import CaseError, UsageError
-from dem_cli.model.scales import smallest_edge
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
-    from dem_cli.kernels.records import Bodies
+    from dem_cli.engine.simulation import Simulation
     from dem_cli.limit.matrices import Structure
     from dem_cli.model.model import Model
 
@@ -81,27 +79,27 @@ def stands(case: Case, model: Model, settings: Settings = DEFAULT) -> bool | Non
 
     Raises UsageError where the law has no cone |T| ≤ μ N.
     """
-    return _carries(case, model, None, TOUCHING_GAP, settings)
+    return _carries(case, model, None, None, settings)
 
 
-def stands_where_it_rests(
-    case: Case, model: Model, bodies: Bodies, touch: tuple[float, float], settings: Settings = DEFAULT
-) -> bool | None:
-    """The same for blocks that have moved to `bodies`; touch: gaps or overlaps of faces that touch [m].
+def stands_where_it_rests(case: Case, sim: Simulation, touch: tuple[float, float], settings: Settings) -> bool | None:
+    """The same for the blocks of a simulation where they are. touch: gaps or overlaps of faces that touch [m].
 
     Blocks that have turned touch with corners: faces count up to the smallest gap with which forces are found. Raises
     UsageError as `stands`.
     """
-    smallest = smallest_edge(model)
-    near, most = (max(TOUCHING_GAP, reach / smallest) for reach in touch)
-    while True:
-        found = _carries(case, model, bodies, near, settings)
-        if found or near >= most:
-            return found
-        near = min(10.0 * near, most)
+    from dem_cli.limit.analysis import gaps_that_touch
+
+    found: bool | None = None
+    for near in gaps_that_touch(sim.model, touch):
+        found = _carries(case, sim.model, sim, near, settings)
+        if found:
+            break
+    return found
 
 
-def _carries(case: Case, model: Model, bodies: Bodies | None, near: float, settings: Settings) -> bool | None:
+def _carries(case: Case, model: Model, moved: Simulation | None, near: float | None, settings: Settings) -> bool | None:
+    """As `stands`, of the start or of the blocks of a simulation with faces that are as near as that."""
     from dem_cli.laws.envelope import frictional
     from dem_cli.limit.analysis import start_structure
     from dem_cli.limit.associated import carried
@@ -109,7 +107,11 @@ def _carries(case: Case, model: Model, bodies: Bodies | None, near: float, setti
 
     request = solver_request(case)
     properties = joint_properties(request, model, settings.stiffness.statics)
-    structure = start_structure(model, properties, bodies=bodies, near=near)
+    structure = (
+        start_structure(model, properties)
+        if moved is None or near is None
+        else start_structure(model, properties, bodies=moved.bodies, near=near)
+    )
     if not structure.dead.any():
         return True  # nothing to carry
     friction = friction_of(structure.joints, law_of(request))

@@ -201,7 +201,7 @@ def moved_into_it(run: StaticRun) -> bool:
         return False
     touch = 2.0 * measures.largest_overlap(sim), min(WIDEST * sim.smallest, 10.0 * moved)
     try:
-        return bool(stands_where_it_rests(run.case, run.model, sim.bodies, touch, run.job.settings))
+        return bool(stands_where_it_rests(run.case, sim, touch, run.job.settings))
     except UsageError:
         return False
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -299,15 +299,26 @@ def load_where_it_rests(
     in any case, and at most [m]. Blocks that have turned touch with corners: faces touch up to the smallest gap with
     which they carry the dead loads. Raises UsageError as `limit_loads`.
     """
-    smallest = smallest_edge(model)
-    near, most = (max(TOUCHING_GAP, reach / smallest) for reach in touch)
-    while True:
+    for near in gaps_that_touch(model, touch):
         structure = start_structure(model, properties, law, bodies, near)
         strength = envelope_of(structure.joints, law, bonds=structure.bonds)
         found = limit_load(structure, strength, settings.associated)
-        if found.upper is not None or near >= most:
-            return found
+        if found.upper is not None:
+            break
+    return found
+
+
+def gaps_that_touch(model: Model, touch: tuple[float, float]) -> Iterator[float]:
+    """Gaps or overlaps up to which faces touch, one after the other ten times as wide, in smallest edges.
+
+    touch: the first and the last of them [m].
+    """
+    smallest = smallest_edge(model)
+    near, most = (max(TOUCHING_GAP, reach / smallest) for reach in touch)
+    yield near
+    while near < most:
         near = min(10.0 * near, most)
+        yield near
 
 
 def load_of_points(

@@ -92,8 +92,6 @@ ALLOWED: dict[str, set[str] | None] = {
     "ensembles": {
         "geometry",
         "assembly",
-        "contact.start",
-        "kernels.records",
         "case.schema",
         "case.variation",
         "dynamics",
