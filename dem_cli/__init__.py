@@ -10,10 +10,11 @@ __all__ = ["Result", "__version__", "load", "open", "run"]
 
 TYPE_CHECKING = False  # type checkers take it as true; typing itself costs milliseconds
 if TYPE_CHECKING:
-    from dem_cli.public.functions import load, open, run
-    from dem_cli.public.result import Result
+    from dem_cli.app.public.functions import load, open, run
+    from dem_cli.app.public.result import Result
 
-_HOMES = {"run": "functions", "load": "functions", "open": "functions", "Result": "result"}  # modules of dem_cli.public
+# Modules of dem_cli.app.public.
+_HOMES = {"run": "functions", "load": "functions", "open": "functions", "Result": "result"}
 
 
 def __getattr__(name: str) -> object:
@@ -22,7 +23,7 @@ def __getattr__(name: str) -> object:
         raise AttributeError(f"module 'dem_cli' has no attribute '{name}' (public: {', '.join(__all__)})")
     from importlib import import_module
 
-    globals()[name] = found = getattr(import_module(f"dem_cli.public.{_HOMES[name]}"), name)
+    globals()[name] = found = getattr(import_module(f"dem_cli.app.public.{_HOMES[name]}"), name)
     return found
 
 

@@ -1,7 +1,7 @@
 """Declared parameters of a law, a link or a motion: meaning, unit, range, default and example, in plain Python.
 
 A class of `Parameters` names them; its instances are frozen records that need nothing else. The table of a case file,
-its messages and its pages follow from the declaration (tables/declared.py).
+its messages and its pages follow from the declaration (case/tables/declared.py).
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ DemError
 ├── SolverError      exit 3   the solver gave up; what it has is kept
 └── OutputError      exit 3   results could not be written (full disk, no permission)
 
-Anything else is a fault of the program: cli/internal_error.py, exit 70.
+Anything else is a fault of the program: app/cli/internal_error.py, exit 70.
 """
 
 from __future__ import annotations

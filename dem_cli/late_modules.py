@@ -46,7 +46,7 @@ LATE: dict[str, dict[str, Any]] = {  # what each answers for as it is not loaded
     "numpy.testing": {},
     "numpy.typing": HINTS,
     "pickle": {},
-    "pydantic.plugin._loader": {"get_plugins": tuple},  # none: dem_cli/cli/main.py; it reads all that is installed
+    "pydantic.plugin._loader": {"get_plugins": tuple},  # none: dem_cli/app/cli/main.py; it reads all that is installed
     "pydoc": {},
     "secrets": {},
     "tempfile": {},

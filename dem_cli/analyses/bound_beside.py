@@ -10,20 +10,20 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from dem_cli.engine import measures
-from dem_cli.engine.kinematics import gaps_may_close
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.ensembles.case_job import CaseJob
+from dem_cli.analyses.ensembles.case_job import CaseJob
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.kinematics import gaps_may_close
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.records.statuses import ABOVE
+from dem_cli.core.statics.failure_bracket import OK
 from dem_cli.errors import UsageError
-from dem_cli.records.statuses import ABOVE
-from dem_cli.statics.failure_bracket import OK
 
 if TYPE_CHECKING:
-    from dem_cli.engine.simulation import Simulation
-    from dem_cli.engine.state import SavedState
-    from dem_cli.limit.analysis import LimitLoads
-    from dem_cli.model.model import Model
-    from dem_cli.statics.failure_bracket import FailureLoad
+    from dem_cli.core.engine.simulation import Simulation
+    from dem_cli.core.engine.state import SavedState
+    from dem_cli.core.limit.analysis import LimitLoads
+    from dem_cli.core.model.model import Model
+    from dem_cli.core.statics.failure_bracket import FailureLoad
 
 WIDEST = 0.1  # of the smallest edge: gaps between blocks that have moved, over which faces still touch at most
 
@@ -59,8 +59,8 @@ class StartBound:
     def loads(self) -> LimitLoads | None:
         """Limit analysis of the start, with the path where the case asks for it; None, with `why_not`, without any."""
         job = self.job
-        job.clock.imported("dem_cli.limit.analysis")
-        from dem_cli.limit.analysis import limit_loads, require_scalable, taken_as_plane
+        job.clock.imported("dem_cli.core.limit.analysis")
+        from dem_cli.core.limit.analysis import limit_loads, require_scalable, taken_as_plane
 
         properties, law = joint_properties(job.request, self.model, job.stiffness("fixed")), law_of(job.request)
         note = taken_as_plane(properties)
@@ -101,7 +101,7 @@ class StartBound:
             or abs(loads.associated.upper - low) <= resolution * abs(low)
         ):
             return
-        from dem_cli.limit.analysis import with_path
+        from dem_cli.core.limit.analysis import with_path
 
         job.clock.progress("limit analysis", 0.0, 0.0, None)
         self.loads = loads = with_path(loads, job.settings.limit)
@@ -237,7 +237,7 @@ def _bound_there(job: CaseJob, sim: Simulation, displacement: float, sense: floa
     joints of the start with the gaps that have closed since. displacement: how far they have moved [m]; sense: as in
     `_moved`.
     """
-    from dem_cli.limit.analysis import load_of_points, load_where_it_rests
+    from dem_cli.core.limit.analysis import load_of_points, load_where_it_rests
 
     settings, law = job.settings.limit, sim.law
     if sim.kinematics == "fixed":

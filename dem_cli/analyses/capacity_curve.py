@@ -13,27 +13,27 @@ from typing import TYPE_CHECKING, Any
 from dem_cli.analyses import curve_answers
 from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
 from dem_cli.analyses.curve_tracing import CurveTracing
+from dem_cli.analyses.ensembles.case_job import CaseJob
 from dem_cli.analyses.pushover import INTERRUPTED, answer, buckling
-from dem_cli.dynamics.stability import standing
-from dem_cli.engine.job import Outcome
-from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.ensembles.case_job import CaseJob
+from dem_cli.core.dynamics.stability import standing
+from dem_cli.core.engine.job import Outcome
+from dem_cli.core.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.ports import Observer
+from dem_cli.core.statics import softer_joints
+from dem_cli.core.statics.agreement import doubts, load_range, percent
+from dem_cli.core.statics.compliance import check_moves, compliance
+from dem_cli.core.statics.failure_bracket import OK, FailureLoad, SearchRange
+from dem_cli.core.statics.failure_load import LoadSearch
+from dem_cli.core.statics.mechanism import describe
+from dem_cli.core.statics.rigid_limits import RigidLimits
+from dem_cli.core.statics.warm_start import CURVE, GRAVITY, CurveStart
 from dem_cli.errors import SolverError
-from dem_cli.model.model import Model
-from dem_cli.records.ports import Observer
-from dem_cli.statics import softer_joints
-from dem_cli.statics.agreement import doubts, load_range, percent
-from dem_cli.statics.compliance import check_moves, compliance
-from dem_cli.statics.failure_bracket import OK, FailureLoad, SearchRange
-from dem_cli.statics.failure_load import LoadSearch
-from dem_cli.statics.mechanism import describe
-from dem_cli.statics.rigid_limits import RigidLimits
-from dem_cli.statics.warm_start import CURVE, GRAVITY, CurveStart
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
-    from dem_cli.engine.track import Track
+    from dem_cli.core.engine.track import Track
 
 HANGS = "the peak of the curve hangs on its increments; the load is raised from gravity"
 

@@ -6,19 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.arithmetic.products import product
-from dem_cli.code_checks import local_mechanism, n2
-from dem_cli.code_checks.oscillator import participation
-from dem_cli.engine.simulation import Simulation
-from dem_cli.engine.state import SavedState
-from dem_cli.ensembles.case_job import CaseJob
-from dem_cli.motion.eurocode import SOILS
-from dem_cli.statics.bilinear import bilinear, load_at
-from dem_cli.statics.displacement_control import CapacityCurve
-from dem_cli.tables.code_check import CodeCheck
+from dem_cli.analyses.ensembles.case_job import CaseJob
+from dem_cli.case.tables.code_check import CodeCheck
+from dem_cli.core.arithmetic.products import product
+from dem_cli.core.code_checks import local_mechanism, n2
+from dem_cli.core.code_checks.oscillator import participation
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.engine.state import SavedState
+from dem_cli.core.motion.eurocode import SOILS
+from dem_cli.core.statics.bilinear import bilinear, load_at
+from dem_cli.core.statics.displacement_control import CapacityCurve
 
 LEAST_FORCE = 1e-3  # of all weights, from which dead loads without mass are worth a word
-CORNER = 2  # of a row of motion/eurocode.py: SOILS
+CORNER = 2  # of a row of core/motion/eurocode.py: SOILS
 
 
 def summary(job: CaseJob, curve: CapacityCurve, force: float, scale: float) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 Ramps are quick, but where joints are so stiff that they would be long. Where joints slip as blocks are moved, a curve
 may hang on how long ramps are; then every increment is solved as a contact problem of its own
-(statics/implicit_control.py), from gravity on, and the run says what changed.
+(core/statics/implicit_control.py), from gravity on, and the run says what changed.
 """
 
 from __future__ import annotations
@@ -10,17 +10,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.analyses import curve_answers
-from dem_cli.engine import measures
-from dem_cli.ensembles.case_job import CaseJob
+from dem_cli.analyses.ensembles.case_job import CaseJob
+from dem_cli.core.engine import measures
+from dem_cli.core.statics.displacement_control import CapacityCurve, CurvePoint, DisplacementControl, Followed, trace
+from dem_cli.core.statics.implicit_control import ImplicitControl, StiffControl, why_not
 from dem_cli.errors import SolverError
-from dem_cli.statics.displacement_control import CapacityCurve, CurvePoint, DisplacementControl, Followed, trace
-from dem_cli.statics.implicit_control import ImplicitControl, StiffControl, why_not
 
 if TYPE_CHECKING:
-    from dem_cli.engine.state import SavedState
-    from dem_cli.engine.track import Track
-    from dem_cli.records.frames import Frame
-    from dem_cli.records.history_rows import HistoryRow
+    from dem_cli.core.engine.state import SavedState
+    from dem_cli.core.engine.track import Track
+    from dem_cli.core.records.frames import Frame
+    from dem_cli.core.records.history_rows import HistoryRow
 
 RAMPS, IMPLICIT, MIXED = "ramps", "implicit", "ramps, long ones implicit"  # how increments were made
 INTERRUPTED = "interrupted"

@@ -9,21 +9,21 @@ import numpy as np
 
 from dem_cli.analyses.bound_beside import Carried, beside_path, status_beside
 from dem_cli.analyses.curve_tracing import followed
-from dem_cli.dynamics.stability import buckles, standing
-from dem_cli.engine import measures
-from dem_cli.engine.job import Outcome
-from dem_cli.engine.joint_summary import END, joint_state
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.engine.track import Track
-from dem_cli.ensembles.case_job import CaseJob
+from dem_cli.analyses.ensembles.case_job import CaseJob
+from dem_cli.core.dynamics.stability import buckles, standing
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.job import Outcome
+from dem_cli.core.engine.joint_summary import END, joint_state
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.engine.track import Track
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.ports import Observer, stage
+from dem_cli.core.records.statuses import FALLS
+from dem_cli.core.statics.compliance import check_moves, compliance
+from dem_cli.core.statics.displacement_control import DisplacementControl
+from dem_cli.core.statics.equilibrium import settle_or_fail, unexpected
+from dem_cli.core.statics.hysteresis import loops, state_of
 from dem_cli.errors import SolverError
-from dem_cli.model.model import Model
-from dem_cli.records.ports import Observer, stage
-from dem_cli.records.statuses import FALLS
-from dem_cli.statics.compliance import check_moves, compliance
-from dem_cli.statics.displacement_control import DisplacementControl
-from dem_cli.statics.equilibrium import settle_or_fail, unexpected
-from dem_cli.statics.hysteresis import loops, state_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

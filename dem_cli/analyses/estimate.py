@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.analyses.estimate_cost import cost_of
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.engine.automatic_stiffness import needed_ratio, ratio_of, static_ratio
-from dem_cli.engine.kinematics import live_scale, open_gaps_doubt, why_moving
-from dem_cli.engine.measures import shares_of_blocks
-from dem_cli.engine.properties import integrates_with, joint_properties, law_of
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.engine.simulation import Simulation
-from dem_cli.links.matrices import each
-from dem_cli.links.registry import LINKS
-from dem_cli.model.model import Model
-from dem_cli.model.scales import largest_structure, stiffness_scale
+from dem_cli.core.engine.automatic_stiffness import needed_ratio, ratio_of, static_ratio
+from dem_cli.core.engine.kinematics import live_scale, open_gaps_doubt, why_moving
+from dem_cli.core.engine.measures import shares_of_blocks
+from dem_cli.core.engine.properties import integrates_with, joint_properties, law_of
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.links.matrices import each
+from dem_cli.core.links.registry import LINKS
+from dem_cli.core.model.model import Model
+from dem_cli.core.model.scales import largest_structure, stiffness_scale
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -87,8 +87,8 @@ def _links(model: Model) -> Rows:
 
 def _shaking(case: Case, model: Model) -> Rows:
     from dem_cli.analyses.estimate_shaking import describe_shaking
-    from dem_cli.dynamics.history import damping_of_start, shaken
-    from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
+    from dem_cli.core.dynamics.history import damping_of_start, shaken
+    from dem_cli.core.dynamics.rocking_stiffness import rocking_stiffness
 
     request = solver_request(case)
     chosen = rocking_stiffness(request, model, DEFAULT)
@@ -242,7 +242,7 @@ def _runs(case: Case) -> Rows:
     """Of a safety analysis: what is varied, and how many runs that takes. Raises CaseError where it cannot be."""
     if case.analysis.kind != "safety":
         return []
-    from dem_cli.ensembles.static_values import expected, scale_of
+    from dem_cli.analyses.ensembles.static_values import expected, scale_of
 
     scale, (fewest, most) = scale_of(case, DEFAULT.safety), expected(case)
     named = "F" if case.analysis.of_strength else case.analysis.vary

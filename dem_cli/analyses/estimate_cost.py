@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.engine.clock import duration_words
+from dem_cli.core.engine.clock import duration_words
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
-    from dem_cli.dynamics.time_step import TimeStep
-    from dem_cli.engine.dynamic import DynamicSimulation
-    from dem_cli.engine.simulation import Simulation
+    from dem_cli.core.dynamics.time_step import TimeStep
+    from dem_cli.core.engine.dynamic import DynamicSimulation
+    from dem_cli.core.engine.simulation import Simulation
 
 
 class Span(NamedTuple):
@@ -89,7 +89,7 @@ def cost_of(case: Case, sim: Simulation, of_property: bool) -> list[tuple[str, s
     costs = NANOSECONDS[d]
     few, many = (min(steps, analysis.max_steps) for steps in _steps(case, sim, of_property))
     if analysis.kind == "safety":
-        from dem_cli.ensembles.static_values import expected
+        from dem_cli.analyses.ensembles.static_values import expected
 
         few, many = (steps * runs for steps, runs in zip((few, many), expected(case)))
     moves = sim.kinematics != "fixed" or (of_property and analysis.kinematics == "auto")

@@ -6,23 +6,23 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from dem_cli.analyses.ensembles.record_search import records_of, runs_per_record
 from dem_cli.analyses.estimate_cost import cost_of_shaking
 from dem_cli.analyses.modes import touching_points
-from dem_cli.assembly.ground_motions import motions_of
-from dem_cli.dynamics.coda import longest_coda
-from dem_cli.dynamics.frequencies import modes, system
-from dem_cli.dynamics.ground import GroundMotion
-from dem_cli.dynamics.history import duration_of
-from dem_cli.dynamics.time_step import TimeStep, time_step
-from dem_cli.dynamics.vibration_error import refined
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.ensembles.record_search import records_of, runs_per_record
+from dem_cli.core.dynamics.coda import longest_coda
+from dem_cli.core.dynamics.frequencies import modes, system
+from dem_cli.core.dynamics.ground import GroundMotion
+from dem_cli.core.dynamics.history import duration_of
+from dem_cli.core.dynamics.time_step import TimeStep, time_step
+from dem_cli.core.dynamics.vibration_error import refined
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.masonry.assembly.ground_motions import motions_of
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
-    from dem_cli.engine.dynamic import DynamicSimulation
-    from dem_cli.motion.motion import Motion
-    from dem_cli.records.requests import SolverRequest
+    from dem_cli.core.engine.dynamic import DynamicSimulation
+    from dem_cli.core.motion.motion import Motion
+    from dem_cli.core.records.requests import SolverRequest
 
 Rows = list[tuple[str, str]]
 MOST_MOTIONS = 6  # that are listed

@@ -13,17 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.dynamics.bending_stiffness import bending_doubts
-from dem_cli.dynamics.braked_motion import braked_words
-from dem_cli.dynamics.coda import longest_coda, undecided
-from dem_cli.dynamics.ground import GroundMotion
-from dem_cli.dynamics.history import duration_of
-from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
-from dem_cli.engine.job import Outcome
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, Task, each
-from dem_cli.ensembles.capacities import (
+from dem_cli.analyses.ensembles.batch import Batch, Batcher, ShakingTrial, Task, each
+from dem_cli.analyses.ensembles.capacities import (
     Bounds,
     Outcomes,
     between,
@@ -33,20 +24,29 @@ from dem_cli.ensembles.capacities import (
     split,
     survived_above,
 )
-from dem_cli.ensembles.record_search import bisection, records_of, runs_per_record, scaled
-from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, told_peaks
-from dem_cli.ensembles.variants import Variant
+from dem_cli.analyses.ensembles.record_search import bisection, records_of, runs_per_record, scaled
+from dem_cli.analyses.ensembles.shaken_run import ProgressOnly, RestedStructure, told_peaks
+from dem_cli.analyses.ensembles.variants import Variant
+from dem_cli.core.dynamics.bending_stiffness import bending_doubts
+from dem_cli.core.dynamics.braked_motion import braked_words
+from dem_cli.core.dynamics.coda import longest_coda, undecided
+from dem_cli.core.dynamics.ground import GroundMotion
+from dem_cli.core.dynamics.history import duration_of
+from dem_cli.core.dynamics.rocking_stiffness import rocking_stiffness
+from dem_cli.core.engine.job import Outcome
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.history_rows import RunRow
+from dem_cli.core.records.ports import Observer
+from dem_cli.core.records.statuses import FALLS, MOVES
 from dem_cli.errors import SolverError
-from dem_cli.model.model import Model
-from dem_cli.output.distinct_names import distinct
-from dem_cli.records.history_rows import RunRow
-from dem_cli.records.ports import Observer
-from dem_cli.records.statuses import FALLS, MOVES
+from dem_cli.masonry.assembly.solver_request import solver_request
+from dem_cli.results.output.distinct_names import distinct
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
-    from dem_cli.motion.motion import Motion
-    from dem_cli.tables.analysis import FragilityAnalysis
+    from dem_cli.case.tables.analysis import FragilityAnalysis
+    from dem_cli.core.motion.motion import Motion
 
 MOST_LISTED = 5  # runs that one warning names
 

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from dem_cli.dynamics.stability import buckles
-from dem_cli.engine import measures
-from dem_cli.engine.job import Outcome
-from dem_cli.engine.joint_summary import END, joint_state
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.ensembles.case_job import CaseJob
+from dem_cli.analyses.ensembles.case_job import CaseJob
+from dem_cli.core.dynamics.stability import buckles
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.job import Outcome
+from dem_cli.core.engine.joint_summary import END, joint_state
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.ports import Observer
+from dem_cli.core.records.statuses import BUCKLED, FALLS
+from dem_cli.core.statics.equilibrium import settle
+from dem_cli.core.statics.failure_test import moved_far
 from dem_cli.errors import SolverError
-from dem_cli.model.model import Model
-from dem_cli.records.ports import Observer
-from dem_cli.records.statuses import BUCKLED, FALLS
-from dem_cli.statics.equilibrium import settle
-from dem_cli.statics.failure_test import moved_far
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

@@ -1,4 +1,4 @@
-"""Hand check of a case that is one running-bond wall: whether limit/rigid_wall.py applies, and its multiplier."""
+"""Hand check of a case that is one running-bond wall: whether core/limit/rigid_wall.py applies, and its multiplier."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli.limit.rigid_wall import split_load
+from dem_cli.core.limit.rigid_wall import split_load
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

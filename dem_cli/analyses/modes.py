@@ -11,23 +11,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli.arithmetic.functions import agreed
-from dem_cli.arithmetic.products import norm
-from dem_cli.dynamics.frequencies import Modes, highest_frequency, modes, system
-from dem_cli.engine import measures
-from dem_cli.engine.audit import unbending
-from dem_cli.engine.budget import Budget
-from dem_cli.engine.job import Outcome
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.engine.simulation import Simulation
-from dem_cli.ensembles.case_job import CaseJob
+from dem_cli.analyses.ensembles.case_job import CaseJob
+from dem_cli.core.arithmetic.functions import agreed
+from dem_cli.core.arithmetic.products import norm
+from dem_cli.core.dynamics.frequencies import Modes, highest_frequency, modes, system
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.audit import unbending
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.engine.job import Outcome
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.model.model import Model
+from dem_cli.core.model.scales import mean_weight
+from dem_cli.core.records.frames import Frame
+from dem_cli.core.records.ports import Observer
+from dem_cli.core.records.statuses import FALLS
+from dem_cli.core.statics.equilibrium import settle, stand
 from dem_cli.errors import CaseError, CaseProblem, SolverError
-from dem_cli.model.model import Model
-from dem_cli.model.scales import mean_weight
-from dem_cli.records.frames import Frame
-from dem_cli.records.ports import Observer
-from dem_cli.records.statuses import FALLS
-from dem_cli.statics.equilibrium import settle, stand
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -53,7 +53,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
 
 def _simulation(job: CaseJob) -> Simulation:
     """On joints that are the springs that they are. With a measured frequency their stiffness is a property of the
-    structure, which has the contact points of such joints (laws/stiffness.py)."""
+    structure, which has the contact points of such joints (core/laws/stiffness.py)."""
     sim = job.moving_simulation(elastic=True)
     if job.case.analysis.measured is None or not sim.properties.rigid.any():
         return sim
@@ -226,7 +226,7 @@ def _scaled(sim: Simulation, factor: float) -> dict[str, dict[str, float]]:
 
 def _with_points(case: Case, sim: Simulation, found: dict[str, dict[str, float]]) -> dict[str, dict[str, float]]:
     """Beside kn and ks the contact points that they belong to, where the case does not say how many: time histories
-    have others (laws/stiffness.py)."""
+    have others (core/laws/stiffness.py)."""
     layouts = zip(sim.properties.names, sim.properties.layouts, strict=True)
     points = {
         name: layout.points

@@ -8,33 +8,33 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
-from dem_cli.dynamics.stability import buckles, standing
-from dem_cli.engine.automatic_stiffness import ratio_of
-from dem_cli.engine.job import Outcome
-from dem_cli.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
-from dem_cli.engine.kinematics import fixed_beside
-from dem_cli.engine.properties import law_of
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.engine.simulation import Simulation
-from dem_cli.ensembles.case_job import CaseJob
+from dem_cli.analyses.ensembles.case_job import CaseJob
+from dem_cli.core.dynamics.stability import buckles, standing
+from dem_cli.core.engine.automatic_stiffness import ratio_of
+from dem_cli.core.engine.job import Outcome
+from dem_cli.core.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
+from dem_cli.core.engine.kinematics import fixed_beside
+from dem_cli.core.engine.properties import law_of
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.ports import Observer
+from dem_cli.core.records.statuses import BUCKLED, FALLS
+from dem_cli.core.statics import post_peak, softer_joints
+from dem_cli.core.statics.agreement import at_the_bound, doubts, histories, load_range, percent, unique
+from dem_cli.core.statics.compliance import compliance
+from dem_cli.core.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, SearchRange
+from dem_cli.core.statics.failure_load import LoadSearch
+from dem_cli.core.statics.mechanism import describe, moved_blocks
+from dem_cli.core.statics.rigid_limits import RigidLimits
+from dem_cli.core.statics.warm_start import GRAVITY, IMPLICIT, find_start
 from dem_cli.errors import SolverError
-from dem_cli.model.model import Model
-from dem_cli.records.ports import Observer
-from dem_cli.records.statuses import BUCKLED, FALLS
-from dem_cli.statics import post_peak, softer_joints
-from dem_cli.statics.agreement import at_the_bound, doubts, histories, load_range, percent, unique
-from dem_cli.statics.compliance import compliance
-from dem_cli.statics.failure_bracket import EXISTS, NO_FAILURE, OK, FailureLoad, SearchRange
-from dem_cli.statics.failure_load import LoadSearch
-from dem_cli.statics.mechanism import describe, moved_blocks
-from dem_cli.statics.rigid_limits import RigidLimits
-from dem_cli.statics.warm_start import GRAVITY, IMPLICIT, find_start
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from dem_cli.case.schema import Case
-    from dem_cli.engine.track import Track
+    from dem_cli.core.engine.track import Track
 
 INTERRUPTED = "interrupted"
 MOTION, IMPOSSIBLE, BUCKLING = "motion", "limit analysis", "buckling"  # what failure is proved by

@@ -1,6 +1,6 @@
 """All analysis kinds. A new one is one file and one line here."""
 
-from dem_cli.tables.analysis import (
+from dem_cli.case.tables.analysis import (
     Analysis,
     CycleAnalysis,
     FragilityAnalysis,
@@ -10,7 +10,7 @@ from dem_cli.tables.analysis import (
     SettlementAnalysis,
     TimeHistoryAnalysis,
 )
-from dem_cli.tables.safety import SafetyAnalysis
+from dem_cli.case.tables.safety import SafetyAnalysis
 
 
 def _gravity():

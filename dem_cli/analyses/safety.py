@@ -10,25 +10,25 @@ import math
 import time
 from typing import TYPE_CHECKING, Any
 
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.engine.job import Outcome
-from dem_cli.engine.kinematics import why_moving
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.ensembles import bisection
-from dem_cli.ensembles.bisection import Ends
-from dem_cli.ensembles.shaken_run import ProgressOnly
-from dem_cli.ensembles.static_bound import Bound, bound
-from dem_cli.ensembles.static_run import StaticRun, decide, fall, moved_into_it
-from dem_cli.ensembles.static_values import changed, checked_model, load_doubts, scale_of, weaker
+from dem_cli.analyses.ensembles import bisection
+from dem_cli.analyses.ensembles.bisection import Ends
+from dem_cli.analyses.ensembles.shaken_run import ProgressOnly
+from dem_cli.analyses.ensembles.static_bound import Bound, bound
+from dem_cli.analyses.ensembles.static_run import StaticRun, decide, fall, moved_into_it
+from dem_cli.analyses.ensembles.static_values import changed, checked_model, load_doubts, scale_of, weaker
+from dem_cli.core.engine.job import Outcome
+from dem_cli.core.engine.kinematics import why_moving
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.laws.strength import strengths
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.ports import Observer
+from dem_cli.core.records.statuses import ABOVE
 from dem_cli.errors import CaseError
-from dem_cli.laws.strength import strengths
-from dem_cli.model.model import Model
-from dem_cli.records.ports import Observer
-from dem_cli.records.statuses import ABOVE
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
-    from dem_cli.tables.safety import SafetyAnalysis
+    from dem_cli.case.tables.safety import SafetyAnalysis
 
 NOT_CONVERGED, INTERRUPTED = "not converged", "interrupted"
 

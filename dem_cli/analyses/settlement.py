@@ -6,24 +6,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli.arithmetic.products import product
-from dem_cli.dynamics.stability import buckles
-from dem_cli.engine import measures
-from dem_cli.engine.budget import Budget
-from dem_cli.engine.job import Outcome
-from dem_cli.engine.joint_summary import END, joint_state
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.engine.simulation import Simulation
-from dem_cli.engine.track import Track
-from dem_cli.ensembles.case_job import CaseJob
+from dem_cli.analyses.ensembles.case_job import CaseJob
+from dem_cli.core.arithmetic.products import product
+from dem_cli.core.dynamics.stability import buckles
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.engine.job import Outcome
+from dem_cli.core.engine.joint_summary import END, joint_state
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.engine.track import Track
+from dem_cli.core.geometry.rotation import turned_as_one
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.ports import Observer, stage
+from dem_cli.core.records.statuses import BUCKLED, FALLS
+from dem_cli.core.statics.equilibrium import stand
+from dem_cli.core.statics.mechanism import describe
+from dem_cli.core.statics.settlement_way import SettlementWay
 from dem_cli.errors import CaseError, CaseProblem, SolverError
-from dem_cli.geometry.rotation import turned_as_one
-from dem_cli.model.model import Model
-from dem_cli.records.ports import Observer, stage
-from dem_cli.records.statuses import BUCKLED, FALLS
-from dem_cli.statics.equilibrium import stand
-from dem_cli.statics.mechanism import describe
-from dem_cli.statics.settlement_way import SettlementWay
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

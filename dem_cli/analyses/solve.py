@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from dem_cli.analyses.registry import ANALYSES
-from dem_cli.engine.job import Outcome
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.model.model import Model
-from dem_cli.records.ports import Observer
+from dem_cli.core.engine.job import Outcome
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.ports import Observer
 
 if TYPE_CHECKING:
+    from dem_cli.analyses.ensembles.batch import Batch
     from dem_cli.case.schema import Case
-    from dem_cli.ensembles.batch import Batch
 
 
 def solve(

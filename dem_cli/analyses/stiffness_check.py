@@ -12,21 +12,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli.dynamics.extremes import without_meaning
-from dem_cli.dynamics.rocking_stiffness import RockingStiffness
-from dem_cli.engine.measures import largest_displacement
-from dem_cli.engine.settings import Settings
-from dem_cli.ensembles.case_job import CaseJob
-from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult
-from dem_cli.ensembles.variants import Variant
-from dem_cli.records.history_rows import MONITOR_UNITS
+from dem_cli.analyses.ensembles.case_job import CaseJob
+from dem_cli.analyses.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult
+from dem_cli.analyses.ensembles.variants import Variant
+from dem_cli.core.dynamics.extremes import without_meaning
+from dem_cli.core.dynamics.rocking_stiffness import RockingStiffness
+from dem_cli.core.engine.measures import largest_displacement
+from dem_cli.core.engine.settings import Settings
+from dem_cli.core.records.history_rows import MONITOR_UNITS
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Monitor
-    from dem_cli.dynamics.history import TimeHistory
-    from dem_cli.engine.dynamic import DynamicSimulation
-    from dem_cli.motion.motion import Motion
-    from dem_cli.records.requests import MonitorRequest
+    from dem_cli.core.dynamics.history import TimeHistory
+    from dem_cli.core.engine.dynamic import DynamicSimulation
+    from dem_cli.core.motion.motion import Motion
+    from dem_cli.core.records.requests import MonitorRequest
 
 MOST_LISTED = 3  # monitors that a warning names
 WHY = (

@@ -15,25 +15,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dem_cli.analyses.ensembles.batch import Batch, Batcher, ShakingTrial, each
+from dem_cli.analyses.ensembles.case_job import CaseJob
+from dem_cli.analyses.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult, told_peaks
+from dem_cli.analyses.ensembles.variants import Variant
 from dem_cli.analyses.stiffness_check import checked
-from dem_cli.assembly.ground_motions import motions_of
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.dynamics.bending_stiffness import bending_doubts
-from dem_cli.dynamics.coda import longest_coda, undecided
-from dem_cli.dynamics.extremes import without_meaning
-from dem_cli.dynamics.ground import GroundMotion
-from dem_cli.dynamics.history import TimeHistory
-from dem_cli.dynamics.rocking_stiffness import rocking_stiffness
-from dem_cli.engine.job import Outcome
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, each
-from dem_cli.ensembles.case_job import CaseJob
-from dem_cli.ensembles.shaken_run import ProgressOnly, RestedStructure, ShakenRunResult, told_peaks
-from dem_cli.ensembles.variants import Variant
-from dem_cli.model.model import Model
-from dem_cli.records.history_rows import RunRow
-from dem_cli.records.ports import Observer
-from dem_cli.records.statuses import FALLS, MOVES
+from dem_cli.core.dynamics.bending_stiffness import bending_doubts
+from dem_cli.core.dynamics.coda import longest_coda, undecided
+from dem_cli.core.dynamics.extremes import without_meaning
+from dem_cli.core.dynamics.ground import GroundMotion
+from dem_cli.core.dynamics.history import TimeHistory
+from dem_cli.core.dynamics.rocking_stiffness import rocking_stiffness
+from dem_cli.core.engine.job import Outcome
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.history_rows import RunRow
+from dem_cli.core.records.ports import Observer
+from dem_cli.core.records.statuses import FALLS, MOVES
+from dem_cli.masonry.assembly.ground_motions import motions_of
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case

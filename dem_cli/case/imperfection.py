@@ -6,10 +6,10 @@ from typing import Any, ClassVar
 
 from pydantic import Field, model_validator
 
-from dem_cli.arithmetic.chance import chance
 from dem_cli.case.base import CaseModel, KeyProblem, Pair, Positive
 from dem_cli.case.selection import Selection
 from dem_cli.case.wording import show
+from dem_cli.core.arithmetic.chance import chance
 
 ERRORS = ("height", "length", "wedge", "shift", "lean")  # the keys that change something
 

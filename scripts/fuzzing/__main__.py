@@ -43,7 +43,7 @@ from fuzzing.cases import case
 from fuzzing.damage import damaged, places
 
 ROOT = Path(__file__).resolve().parents[2]
-CASES = ("dem_cli/cli/templates/*.toml", "cases/verification/**/*.toml", "cases/validation/*.toml")
+CASES = ("dem_cli/app/cli/templates/*.toml", "cases/verification/**/*.toml", "cases/validation/*.toml")
 LIMIT = 20.0  # CPU s of a case
 BATCH = 300  # cases of one process
 WIDEST = 1.051  # of a bound, what a load may be above it: the widest bracket that is drawn, 5 %
@@ -145,7 +145,7 @@ def doubts(summary: dict[str, Any], output: Path) -> Iterator[str]:
 
 def outcome(kind: str, text: str, folder: Path, limit: float = LIMIT) -> tuple[str, list[str], float]:
     """How a case ended, what is wrong with that, and its CPU seconds."""
-    from dem_cli.cli.main import main
+    from dem_cli.app.cli.main import main
 
     path, output = folder / "case.toml", folder / "out"
     path.write_text(text, encoding="utf-8")

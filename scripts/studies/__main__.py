@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 
-from dem_cli.bench.machine import one_thread
+from dem_cli.app.bench.machine import one_thread
 from studies.registry import STUDIES
 
 

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.motion.eurocode import SOILS
-from dem_cli.motion.intensity_measures import fit
-from dem_cli.motion.motion import Motion
-from dem_cli.motion.spectrum import response_spectrum
-from dem_cli.motion.synthetic import suite
-from dem_cli.post.spectra import MotionSuite, draw_motions, draw_spectra
-from dem_cli.tables.base_motion import ArtificialTable
+from dem_cli.case.tables.base_motion import ArtificialTable
+from dem_cli.core.motion.eurocode import SOILS
+from dem_cli.core.motion.intensity_measures import fit
+from dem_cli.core.motion.motion import Motion
+from dem_cli.core.motion.spectrum import response_spectrum
+from dem_cli.core.motion.synthetic import suite
+from dem_cli.results.post.spectra import MotionSuite, draw_motions, draw_spectra
 from studies.places import DOCS
 from studies.study import StudyRunner
 from studies.template import table as markdown

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.records.frames import Frame
-from dem_cli.records.history_rows import HistoryRow, Samples
-from dem_cli.records.ports import Observer
+from dem_cli.core.records.frames import Frame
+from dem_cli.core.records.history_rows import HistoryRow, Samples
+from dem_cli.core.records.ports import Observer
 
 
 class RunKeeper(Observer):

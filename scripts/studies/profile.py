@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.contact.layout import PointLayout, draw
-from dem_cli.laws.profile import Profile
-from dem_cli.post import style
+from dem_cli.core.contact.layout import PointLayout, draw
+from dem_cli.core.laws.profile import Profile
+from dem_cli.results.post import style
 from studies.places import DOCS
 from studies.study import StudyRunner
 

@@ -11,13 +11,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import tomli_w
 
-from dem_cli import api
 from dem_cli.analyses import solve as solver
+from dem_cli.app import api
 from dem_cli.case.reader import LoadedCase
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.model.model import Model
-from dem_cli.output.paraview.vertices import placed_vertices
-from dem_cli.records.frames import Frame
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import Frame
+from dem_cli.results.output.paraview.vertices import placed_vertices
 from studies.observer import RunKeeper
 from studies.places import ROOT
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from dem_cli.bench.cases import compiled
-from dem_cli.bench.machine import describe, sentence
+from dem_cli.app.bench.cases import compiled
+from dem_cli.app.bench.machine import describe, sentence
 from studies import measured, storage
 from studies.places import DOCS
 from studies.template import filled

@@ -9,7 +9,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from dem_cli.bench.table import lines_of, percent
+from dem_cli.app.bench.table import lines_of, percent
 
 
 def filled(template: str, **values: Any) -> str:

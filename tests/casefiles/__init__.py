@@ -12,10 +12,10 @@ from oracle.limit_lp import LimitLoad, bodies_area_and_centroid, frictionless_he
 from oracle.surface_loads import falling, surface_load
 
 from dem_cli.case.reference import Reference
-from dem_cli.structures.placement import place
-from dem_cli.structures.registry import GENERATORS
-from dem_cli.tables.analysis import PushoverAnalysis
-from dem_cli.tables.safety import SafetyAnalysis
+from dem_cli.case.tables.analysis import PushoverAnalysis
+from dem_cli.case.tables.safety import SafetyAnalysis
+from dem_cli.masonry.structures.placement import place
+from dem_cli.masonry.structures.registry import GENERATORS
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 FILES = sorted(CASES.rglob("*.toml"))

@@ -15,9 +15,9 @@ from synthetic.shaking import write_shaking
 from synthetic.solid_runs import solid_frames, solid_wall, write_solid_run
 from synthetic.tumbling import write_shaken_column
 
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 
-ASK = "from dem_cli.render.opengl import choose_window; import pyvista; choose_window()"
+ASK = "from dem_cli.results.render.opengl import choose_window; import pyvista; choose_window()"
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ def one_core(tmp_path, monkeypatch):
     """Commands that use all cores use one: starting more costs more than the runs that pages show."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")
-    monkeypatch.setattr("dem_cli.pipeline.batches.usable_cores", lambda: 1)
+    monkeypatch.setattr("dem_cli.app.pipeline.batches.usable_cores", lambda: 1)
 
 
 @pytest.fixture(scope="session")

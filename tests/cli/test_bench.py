@@ -8,15 +8,15 @@ import numba
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.bench import joints, kernels, others, precision, registry, sweeps, time_histories
-from dem_cli.bench.cases import KNOWN_STRUCTURES
-from dem_cli.bench.spatial import sizes
-from dem_cli.bench.spatial.cases import wall_out_of_plane
-from dem_cli.cli import main as cli
-from dem_cli.cli.bench import command
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.kernels.compilation import machine_code
+from dem_cli.app.bench import joints, kernels, others, precision, registry, sweeps, time_histories
+from dem_cli.app.bench.cases import KNOWN_STRUCTURES
+from dem_cli.app.bench.spatial import sizes
+from dem_cli.app.bench.spatial.cases import wall_out_of_plane
+from dem_cli.app.cli import main as cli
+from dem_cli.app.cli.bench import command
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.kernels.compilation import machine_code
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 
 def bench(*words: str):

@@ -11,12 +11,12 @@ import pytest
 from click.testing import CliRunner
 from oracle.rolling_column import fall, foot
 
-from dem_cli import api
-from dem_cli.calibrate.comparison import TrialAnswer, closest, distance, rows
-from dem_cli.calibrate.table import Calibration, NamedShape
-from dem_cli.calibrate.trials import trials
-from dem_cli.cli.main import main
-from dem_cli.cli.workers import side_by_side
+from dem_cli.app import api
+from dem_cli.app.calibrate.comparison import TrialAnswer, closest, distance, rows
+from dem_cli.app.calibrate.table import Calibration, NamedShape
+from dem_cli.app.calibrate.trials import trials
+from dem_cli.app.cli.main import main
+from dem_cli.app.cli.workers import side_by_side
 from dem_cli.errors import SolverError
 
 CASE = """

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.cli.main import main
-from dem_cli.output.reader import read
-from dem_cli.post.capacity import capacity_axis
+from dem_cli.app.cli.main import main
+from dem_cli.results.output.reader import read
+from dem_cli.results.post.capacity import capacity_axis
 
 BLOCK = """
 title = "A block that slides"

@@ -9,23 +9,24 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from dem_cli import api
+from dem_cli.app import api
+from dem_cli.app.cli import check
+from dem_cli.app.cli.main import main
 from dem_cli.case.reader import CaseSource, parse_toml, validate
-from dem_cli.cli import check
-from dem_cli.cli.main import main
-from dem_cli.kernels import jit
-from dem_cli.kernels.compilation.kept_code import may_be_kept
+from dem_cli.core.kernels import jit
+from dem_cli.core.kernels.compilation.kept_code import may_be_kept
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 WALL = CASES / "verification" / "wall_21.toml"
 LOADED = """
 import sys
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 try:
     main(sys.argv[1:])
 finally:
-    kinds = {"dem_cli.structures.vaults.shapes", "dem_cli.structures.columns.column", "dem_cli.laws.barton"}
-    kinds |= {"numpy.f2py.crackfortran", "numpy.testing._private", "dem_cli.tables.base_motion"}
+    generators = "dem_cli.masonry.structures"
+    kinds = {f"{generators}.vaults.shapes", f"{generators}.columns.column", "dem_cli.core.laws.barton"}
+    kinds |= {"numpy.f2py.crackfortran", "numpy.testing._private", "dem_cli.case.tables.base_motion"}
     print("LOADED", sorted({"numba", "scipy", "h5py", "matplotlib", *kinds} & set(sys.modules)))
 """
 
@@ -135,9 +136,9 @@ kind = "time-history"
 """
 PREPARED = """
 import sys
-from dem_cli import api
+from dem_cli.app import api
 from dem_cli.analyses import time_history
-from dem_cli.assembly.ground_motions import motions_of
+from dem_cli.masonry.assembly.ground_motions import motions_of
 
 print(motions_of(api.load_case(sys.argv[1]).case)[0].displacement(1.0))
 print("LOADED", sorted(n for n in ("scipy.signal", "scipy.optimize", "scipy.interpolate") if n in sys.modules))

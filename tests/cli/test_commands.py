@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from dem_cli import api
-from dem_cli.cli.check import rows
-from dem_cli.cli.main import main
-from dem_cli.cli.new import COMPANIONS, TEMPLATE_KINDS, TEMPLATES
-from dem_cli.report.facts import model_rows
-from dem_cli.structures.registry import GENERATORS
+from dem_cli.app import api
+from dem_cli.app.cli.check import rows
+from dem_cli.app.cli.main import main
+from dem_cli.app.cli.new import COMPANIONS, TEMPLATE_KINDS, TEMPLATES
+from dem_cli.masonry.structures.registry import GENERATORS
+from dem_cli.results.report.facts import model_rows
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -16,8 +16,8 @@ from synthetic.shaking import write_shaking
 from synthetic.solid_runs import solid_frames, solid_wall, write_solid_run
 
 import dem_cli
-from dem_cli.cli.main import main
-from dem_cli.contact.drawn_joints import DrawnJoints
+from dem_cli.app.cli.main import main
+from dem_cli.core.contact.drawn_joints import DrawnJoints
 from dem_cli.errors import DamagedResults
 
 COMMANDS = (("report",), ("plot", "--list"), ("export", "--joints"), ("render",))

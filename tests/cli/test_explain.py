@@ -7,8 +7,8 @@ import json
 import pytest
 from click.testing import CliRunner
 
+from dem_cli.app.cli.main import main
 from dem_cli.case.explain import EVERYDAY_WORDS
-from dem_cli.cli.main import main
 
 
 @pytest.fixture

@@ -8,8 +8,8 @@ import pytest
 from click.testing import CliRunner
 
 import dem_cli
-from dem_cli.cli.main import main
-from dem_cli.records.statuses import FALLS
+from dem_cli.app.cli.main import main
+from dem_cli.core.records.statuses import FALLS
 
 BLOCK = """
 title = "a block beyond the edge"

@@ -12,7 +12,7 @@ import time
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 
 CASE = """\
 title = "Two drums"

@@ -10,7 +10,7 @@ import pytest
 from parsed import nodes
 from shown import NOT_RUN, Reader, blocks
 
-from dem_cli.cli.new import TEMPLATE_KINDS
+from dem_cli.app.cli.new import TEMPLATE_KINDS
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted((ROOT / "docs" / "guide").glob("*.md"))

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 from synthetic.drawn_elsewhere import by_trimesh, facade_by_ezdxf, obj_text, prism, wall_boxes
 
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 
 HEAD = """\
 title = "Imported"

@@ -9,8 +9,8 @@ import pytest
 from casefiles import CASES
 from click.testing import CliRunner
 
-from dem_cli.cli.main import main
-from dem_cli.output.reader import read
+from dem_cli.app.cli.main import main
+from dem_cli.results.output.reader import read
 
 WALL = CASES / "verification" / "wall_21_mu075.toml"
 WEDGED = CASES / "verification" / "wedged_block.toml"
@@ -94,7 +94,7 @@ def test_a_case_that_does_not_stand_says_so():
 
 
 def test_an_answer_that_fails_its_checks_is_no_answer(monkeypatch):
-    from dem_cli.limit import associated
+    from dem_cli.core.limit import associated
 
     monkeypatch.setattr(associated, "TRIES", ({"max_iter": 3},))
     answer = dem("limit", WALL)

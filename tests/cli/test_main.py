@@ -13,9 +13,9 @@ import pytest
 from click.testing import CliRunner
 
 from dem_cli import __version__
-from dem_cli.cli import internal_error
-from dem_cli.cli import main as shell
-from dem_cli.cli.main import COMMANDS, main
+from dem_cli.app.cli import internal_error
+from dem_cli.app.cli import main as shell
+from dem_cli.app.cli.main import COMMANDS, main
 from dem_cli.errors import CaseError, CaseProblem, DemError, OutputError, SolverError, UsageError
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -28,7 +28,7 @@ def python(*words: str, **more) -> subprocess.CompletedProcess[str]:
 
 def test_help_imports_nothing_but_click():
     code = (
-        "import sys; from dem_cli.cli.main import main\n"
+        "import sys; from dem_cli.app.cli.main import main\n"
         "try: main(['--help'])\n"
         "except SystemExit: pass\n"
         "print(sorted({'numpy', 'pydantic', 'numba', 'rich', 'tomli', 'h5py'} & set(sys.modules)))"
@@ -41,7 +41,7 @@ def test_help_imports_nothing_but_click():
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="threads of a process are counted in /proc")
 def test_linear_algebra_does_not_keep_other_cores_busy():
     code = (
-        "import os, dem_cli.cli.main, numpy; numpy.ones((400, 400)) @ numpy.ones((400, 400))\n"
+        "import os, dem_cli.app.cli.main, numpy; numpy.ones((400, 400)) @ numpy.ones((400, 400))\n"
         "print(len(os.listdir('/proc/self/task')))"
     )
     free = {name: value for name, value in ENVIRONMENT.items() if not name.endswith("_NUM_THREADS")}
@@ -217,14 +217,14 @@ def test_want_of_memory_is_no_fault(command, monkeypatch):
     ("place", "said"),
     [
         (
-            "dem_cli.contact.assemble.empty_contacts",
+            "dem_cli.core.contact.assemble.empty_contacts",
             "the joints between blocks (12 blocks): no more could be had; fewer",
         ),
         (
-            "dem_cli.structures.wall_blocks._course",
+            "dem_cli.masonry.structures.wall_blocks._course",
             "the blocks: no more could be had; fewer, larger blocks need less\n",
         ),
-        ("dem_cli.engine.simulation.Simulation.save", "the contact points that are stepped (12 blocks): no more"),
+        ("dem_cli.core.engine.simulation.Simulation.save", "the contact points that are stepped (12 blocks): no more"),
     ],
 )
 def test_want_of_memory_says_what_it_was_for_and_what_needs_less(place, said, monkeypatch, tmp_path):
@@ -266,7 +266,7 @@ def test_a_command_that_ended_runs_what_others_left_for_the_end_and_no_more():
         "class Slow:\n"
         "    def __del__(self): print('freed')\n"
         "kept = Slow()\n"
-        "from dem_cli.cli.main import main\n"
+        "from dem_cli.app.cli.main import main\n"
         "atexit.register(print, 'left for the end')\n"
         "sys.argv = ['dem', *sys.argv[1:]]\n"
         "main()"

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.cli.main import main
-from dem_cli.output.reader import read
+from dem_cli.app.cli.main import main
+from dem_cli.results.output.reader import read
 
 CASE = Path(__file__).resolve().parents[2] / "cases" / "validation" / "portal_modes.toml"
 

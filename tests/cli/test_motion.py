@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.api import load_case, make_case_model
-from dem_cli.assembly.ground_motions import motions_of
-from dem_cli.cli.main import main
-from dem_cli.cli.motion import draw_spectra_of_case
+from dem_cli.app.api import load_case, make_case_model
+from dem_cli.app.cli.main import main
+from dem_cli.app.cli.motion import draw_spectra_of_case
+from dem_cli.masonry.assembly.ground_motions import motions_of
 
 CASE = """
 title = "Two drums"

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from oracle.base_motion import pulse
 from oracle.housner import Block, overturns
 
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 
 AMPLITUDES, FREQUENCIES = (3.5, 6.0), (0.8, 1.4)  # [m/s2], [Hz]; every answer is far from a bound
 SECONDS = 3.0
@@ -43,7 +43,7 @@ def test_it_is_the_exact_one(swept):
 def test_it_is_drawn_where_nobody_says_how(swept, tmp_path, monkeypatch):
     pytest.importorskip("matplotlib")
     drawn = []
-    monkeypatch.setattr("dem_cli.post.maps.draw_map", lambda table, x, y, z, *rest: drawn.append((x, y, z)))
+    monkeypatch.setattr("dem_cli.results.post.maps.draw_map", lambda table, x, y, z, *rest: drawn.append((x, y, z)))
     assert CliRunner().invoke(main, ["plot", str(swept), "-o", str(tmp_path / "map.png")]).exit_code == 0
     assert drawn == [("motion.amplitude", "motion.frequency", "collapsed")]
     monkeypatch.undo()

@@ -7,8 +7,8 @@ import io
 import pytest
 from synthetic.clock import HandClock
 
-from dem_cli.cli.words import console
-from dem_cli.cli.words.pace import Pace
+from dem_cli.app.cli.words import console
+from dem_cli.app.cli.words.pace import Pace
 
 
 @pytest.fixture

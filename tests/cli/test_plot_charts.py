@@ -10,8 +10,8 @@ from click.testing import CliRunner
 from synthetic import history_rows, wall_frames, wall_model, wall_summary
 from synthetic.shaking import AMPLITUDE, FREQUENCY, write_shaking
 
-from dem_cli.cli.main import main
-from dem_cli.output.store import ResultWriter
+from dem_cli.app.cli.main import main
+from dem_cli.results.output.store import ResultWriter
 
 pytest.importorskip("matplotlib")
 from matplotlib.figure import Figure

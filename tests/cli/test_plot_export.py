@@ -9,8 +9,8 @@ import pytest
 from click.testing import CliRunner
 from synthetic import history_rows, wall_frames, wall_model, wall_summary
 
-from dem_cli.cli.main import main
-from dem_cli.output.store import ResultWriter
+from dem_cli.app.cli.main import main
+from dem_cli.results.output.store import ResultWriter
 
 ROOT = Path(__file__).resolve().parents[2]
 

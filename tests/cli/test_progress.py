@@ -8,8 +8,8 @@ import re
 import pytest
 from synthetic.clock import HandClock
 
-from dem_cli.cli.words import run_counter
-from dem_cli.cli.words.run_counter import RunCounter
+from dem_cli.app.cli.words import run_counter
+from dem_cli.app.cli.words.run_counter import RunCounter
 
 
 @pytest.fixture

@@ -19,24 +19,24 @@ from synthetic.solid_runs import HEIGHT as WALL_HEIGHT
 from synthetic.solid_runs import LENGTH as WALL_LENGTH
 from synthetic.solid_runs import solid_frames, solid_wall, write_solid_run
 
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 from dem_cli.errors import OutputError, UsageError
-from dem_cli.output.reader import read
-from dem_cli.output.store import ResultWriter
+from dem_cli.results.output.reader import read
+from dem_cli.results.output.store import ResultWriter
 
 pytest.importorskip("pyvista")
 pytest.importorskip("matplotlib")
 from PIL import Image
 
-from dem_cli.post import style
-from dem_cli.post.scene.axonometry import Standpoint
-from dem_cli.render import block_colours, movie, opengl, render
-from dem_cli.render.render import RenderOptions
-from dem_cli.render.sheet import Sheet, layout
-from dem_cli.render.view import view_of
+from dem_cli.results.post import style
+from dem_cli.results.post.scene.axonometry import Standpoint
+from dem_cli.results.render import block_colours, movie, opengl, render
+from dem_cli.results.render.render import RenderOptions
+from dem_cli.results.render.sheet import Sheet, layout
+from dem_cli.results.render.view import view_of
 
 ROOT = Path(__file__).resolve().parents[2]
-ASK = "from dem_cli.render.opengl import choose_window; choose_window()"
+ASK = "from dem_cli.results.render.opengl import choose_window; choose_window()"
 
 
 @pytest.fixture(scope="module")

@@ -20,12 +20,12 @@ from synthetic.shaking import write_shaking
 from synthetic.solid_runs import solid_frames, solid_wall, write_solid_run
 from synthetic.tumbling import write_shaken_column
 
-from dem_cli.cli.main import main
-from dem_cli.output.store import ResultWriter
-from dem_cli.records.frames import STATES
-from dem_cli.report import facts
-from dem_cli.report.page import ASSETS, SCRIPTS, STYLE_SHEET, TEMPLATE, THREE, policy, script_json
-from dem_cli.report.view import turns, view
+from dem_cli.app.cli.main import main
+from dem_cli.core.records.frames import STATES
+from dem_cli.results.output.store import ResultWriter
+from dem_cli.results.report import facts
+from dem_cli.results.report.page import ASSETS, SCRIPTS, STYLE_SHEET, TEMPLATE, THREE, policy, script_json
+from dem_cli.results.report.view import turns, view
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -233,7 +233,7 @@ def test_rotation_vectors_of_quaternions():
 
 
 def test_a_long_run_is_thinned_and_keeps_what_matters(tmp_path):
-    from dem_cli.output.reader import read
+    from dem_cli.results.output.reader import read
 
     folder = wall(tmp_path / "wall")
     results = read(folder)
@@ -247,7 +247,7 @@ def test_a_long_run_is_thinned_and_keeps_what_matters(tmp_path):
 
 def test_the_view_of_a_structure_in_space(tmp_path):
     """Faces as they are, closed joints left out, strokes on the block that carries them."""
-    from dem_cli.output.reader import read
+    from dem_cli.results.output.reader import read
 
     model = solid_wall()
     frames = solid_frames(model)
@@ -266,7 +266,7 @@ def test_the_view_of_a_structure_in_space(tmp_path):
 
 def test_a_load_that_is_round_off_of_none_is_none(tmp_path):
     """After a collapse the view said λ = 1.364e−09."""
-    from dem_cli.output.reader import read
+    from dem_cli.results.output.reader import read
 
     results = read(wall(tmp_path / "wall"))
     last = results.frames[-1]
@@ -277,7 +277,7 @@ def test_a_load_that_is_round_off_of_none_is_none(tmp_path):
 
 def test_the_view_of_motion_in_space(tmp_path):
     """The ground moves in three components; the picture holds all places to which blocks come, carried along by it."""
-    from dem_cli.output.reader import read
+    from dem_cli.results.output.reader import read
 
     results = read(write_shaken_column(tmp_path / "run", 60))
     scene = view(results)
@@ -353,7 +353,7 @@ def test_a_run_that_was_stopped_says_so(kind):
 
 
 def test_an_audit_that_finds_something(tmp_path):
-    from dem_cli.output.reader import read
+    from dem_cli.results.output.reader import read
 
     results = read(wall(tmp_path / "wall"))
     assert [check.tone for check in facts.audit(results.summary, results)] == ["good", "good", "good", "good"]
@@ -363,14 +363,14 @@ def test_an_audit_that_finds_something(tmp_path):
 
 
 def test_what_counts_as_balanced_is_what_the_solver_asks_for():
-    from dem_cli.engine.settings import DEFAULT
+    from dem_cli.core.engine.settings import DEFAULT
 
     assert DEFAULT.relaxation.gravity_tolerance == facts.BALANCED
 
 
 def test_colours_of_stages_and_lines_are_in_the_style_sheet():
-    from dem_cli.records.frames import STAGES, STATES
-    from dem_cli.report import charts
+    from dem_cli.core.records.frames import STAGES, STATES
+    from dem_cli.results.report import charts
 
     style = (ASSETS / "page.css").read_text(encoding="utf-8")
     names = [f"line-{name}" for name in (*STAGES, *map(str, range(charts._PALETTE)), "ink", "failure", "limit")]
@@ -380,7 +380,7 @@ def test_colours_of_stages_and_lines_are_in_the_style_sheet():
 
 def test_everything_the_page_is_made_of_is_packaged():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    patterns = project["tool"]["setuptools"]["package-data"]["dem_cli.report"]
+    patterns = project["tool"]["setuptools"]["package-data"]["dem_cli.results.report"]
     kept = {path for pattern in patterns for path in ASSETS.parent.glob(pattern)}
     assert kept == set(ASSETS.iterdir())
     assert {path.name for path in kept} >= {TEMPLATE, STYLE_SHEET, THREE, *SCRIPTS}

@@ -14,7 +14,7 @@ from synthetic import LENGTH, wall_frames, wall_model
 from synthetic.pages import HOSTILE
 
 import dem_cli
-from dem_cli.output.scalars import scalars
+from dem_cli.results.output.scalars import scalars
 
 SMALL = """const touched = document.querySelectorAll("button, select, summary, label, input:not([type=checkbox])");
 const low = (box) => box.width > 0 && (box.width < 44 || box.height < 44);

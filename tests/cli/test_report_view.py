@@ -10,10 +10,10 @@ from synthetic import LENGTH, wall_frames, wall_model
 from synthetic.solid_runs import DEPTH, HEIGHT, solid_frames, solid_wall
 from synthetic.tumbling import DURATION, column, frame_at
 
-from dem_cli.post.frame_measures import scaled
-from dem_cli.post.scene.axonometry import axonometry
-from dem_cli.render.chamfered import sharp
-from dem_cli.render.solids import placed, pose, surface
+from dem_cli.results.post.frame_measures import scaled
+from dem_cli.results.post.scene.axonometry import axonometry
+from dem_cli.results.render.chamfered import sharp
+from dem_cli.results.render.solids import placed, pose, surface
 
 STONE, RAMP_END = (0xEF, 0xE7, 0xD8), (0x6D, 0x0F, 0x23)  # of assets/page.css and assets/scene.js
 JOINTS = {"open": (0xC5, 0x1B, 0x7D), "sticking": (0x9A, 0xA3, 0xAD), "sliding": (0xE0, 0x82, 0x14)}

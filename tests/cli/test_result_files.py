@@ -14,12 +14,12 @@ from click.testing import CliRunner
 from synthetic.solid_runs import solid_frames, solid_wall, write_solid_run
 
 import dem_cli
-from dem_cli.cli.main import main
-from dem_cli.contact.drawn_joints import DrawnJoints
-from dem_cli.output import layout
-from dem_cli.output.layout import GROUPS
-from dem_cli.output.paraview.described_fields import STEP_FIELDS, VTK_FILES
-from dem_cli.records.frames import STATES
+from dem_cli.app.cli.main import main
+from dem_cli.core.contact.drawn_joints import DrawnJoints
+from dem_cli.core.records.frames import STATES
+from dem_cli.results.output import layout
+from dem_cli.results.output.layout import GROUPS
+from dem_cli.results.output.paraview.described_fields import STEP_FIELDS, VTK_FILES
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "results.md").read_text(encoding="utf-8")
 COLUMN = """\

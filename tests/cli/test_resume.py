@@ -16,15 +16,15 @@ import h5py
 import pytest
 from click.testing import CliRunner
 
-from dem_cli import api
-from dem_cli.cli.main import main
+from dem_cli.app import api
+from dem_cli.app.cli.main import main
+from dem_cli.app.pipeline.batches import BatchOptions
+from dem_cli.app.pipeline.execution import Destination, run_case
+from dem_cli.app.pipeline.listener import RunListener
 from dem_cli.interrupts import Interrupts
-from dem_cli.output.resume.checkpoints import Checkpoints
-from dem_cli.output.resume.stages import Keeping
-from dem_cli.output.store import ResultWriter
-from dem_cli.pipeline.batches import BatchOptions
-from dem_cli.pipeline.execution import Destination, run_case
-from dem_cli.pipeline.listener import RunListener
+from dem_cli.results.output.resume.checkpoints import Checkpoints
+from dem_cli.results.output.resume.stages import Keeping
+from dem_cli.results.output.store import ResultWriter
 
 CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
 MIDDLE = 10  # checkpoints
@@ -32,12 +32,12 @@ ALL = Keeping(first=0.0, every=0.005, worth=0.0)
 SCRIPT = """
 import sys, time
 from pathlib import Path
-from dem_cli import api
-from dem_cli.output import store
-from dem_cli.output.resume.stages import Keeping
-from dem_cli.output.store import ResultWriter
-from dem_cli.pipeline.batches import BatchOptions
-from dem_cli.pipeline.execution import Destination, run_case
+from dem_cli.app import api
+from dem_cli.results.output import store
+from dem_cli.results.output.resume.stages import Keeping
+from dem_cli.results.output.store import ResultWriter
+from dem_cli.app.pipeline.batches import BatchOptions
+from dem_cli.app.pipeline.execution import Destination, run_case
 store._BUFFERED_SAMPLES, store._UNFLUSHED = 1024, 1_000_000  # a short run reaches the disk several times
 options = BatchOptions(1, sys.argv[3] == "resume", Keeping(0.0, 0.02, 0.0))
 run_case(api.load_case(sys.argv[1]), Destination(Path(sys.argv[2])), time.perf_counter(), options=options)

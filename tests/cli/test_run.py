@@ -10,14 +10,14 @@ import pytest
 from synthetic import wall_model, wall_summary
 from synthetic.runs import CASE, load, solver
 
-from dem_cli.cli.run import execute
-from dem_cli.cli.words import console
-from dem_cli.output.folder import OutputFolder
-from dem_cli.output.reader import read
-from dem_cli.output.summary import exit_code
-from dem_cli.pipeline.batches import BatchOptions
-from dem_cli.pipeline.monitor_names import monitor_names
-from dem_cli.report import facts
+from dem_cli.app.cli.run import execute
+from dem_cli.app.cli.words import console
+from dem_cli.app.pipeline.batches import BatchOptions
+from dem_cli.app.pipeline.monitor_names import monitor_names
+from dem_cli.results.output.folder import OutputFolder
+from dem_cli.results.output.reader import read
+from dem_cli.results.output.summary import exit_code
+from dem_cli.results.report import facts
 
 
 def run(tmp_path, solve, text=CASE, **options):
@@ -125,7 +125,7 @@ def test_a_picture_that_cannot_be_drawn_costs_no_results(tmp_path, monkeypatch, 
     def fault(*_):
         raise ZeroDivisionError("in a picture")
 
-    monkeypatch.setattr("dem_cli.post.run_pictures.draw_all", fault)
+    monkeypatch.setattr("dem_cli.results.post.run_pictures.draw_all", fault)
     summary, folder = run(tmp_path, solver(), plot=True)
     assert (summary["status"], (folder / "results.h5").is_file()) == ("ok", True)
     assert "no pictures: internal error: ZeroDivisionError: in a picture" in capsys.readouterr().err
@@ -153,7 +153,7 @@ def test_monitor_names_differ(tmp_path):
 
 def test_plain_progress_lines(monkeypatch):
     clock = iter((0.0, 1.0, 11.0, 12.0, 25.0))
-    monkeypatch.setattr("dem_cli.cli.words.console.time.monotonic", lambda: next(clock))
+    monkeypatch.setattr("dem_cli.app.cli.words.console.time.monotonic", lambda: next(clock))
     stream = io.StringIO()
     bar = console.Progress(stream=stream)
     for fraction in (0.1, 0.25, 0.3, None):
@@ -170,7 +170,7 @@ class Terminal(io.StringIO):
 
 
 def test_a_bar_on_a_terminal(monkeypatch):
-    monkeypatch.setattr("dem_cli.cli.words.console._FIRST_BAR", 0.0)
+    monkeypatch.setattr("dem_cli.app.cli.words.console._FIRST_BAR", 0.0)
     stream = Terminal()
     with console.Progress(stream=stream) as bar:
         bar.update("loading", 0.3125, 1.25e-5, 0.5)

@@ -10,8 +10,8 @@ import pytest
 from casefiles import CASES
 from click.testing import CliRunner
 
-from dem_cli.cli.main import main
-from dem_cli.output.reader import read
+from dem_cli.app.cli.main import main
+from dem_cli.results.output.reader import read
 
 COLUMN = CASES / "verification" / "least_thickness_column.toml"
 INCLINE = CASES / "verification" / "safety_incline.toml"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 
 CASE = """\
 [materials.stone]
@@ -103,7 +103,7 @@ def test_a_fault_of_the_program_leaves_the_case(monkeypatch):
     def broken(loaded):
         raise RuntimeError("a fault")
 
-    monkeypatch.setattr("dem_cli.api.laid", broken)
+    monkeypatch.setattr("dem_cli.app.api.laid", broken)
     assert dem("check", "-", given=CASE).exit_code == 70
     (report,) = Path.cwd().glob("dem-internal-error-*.txt")
     assert f"---- <stdin>\n{CASE}" in report.read_text(encoding="utf-8")

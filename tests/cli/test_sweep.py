@@ -17,9 +17,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 from dem_cli.errors import OutputError
-from dem_cli.post.sweep_table import read_sweep
+from dem_cli.results.post.sweep_table import read_sweep
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -199,7 +199,7 @@ def test_a_run_whose_summary_is_broken_is_done_again(case, tmp_path, left):
 
 
 def test_a_full_disk_is_no_fault_of_a_run(case, tmp_path, monkeypatch):
-    from dem_cli.output.store import ResultWriter
+    from dem_cli.results.output.store import ResultWriter
 
     def full(*_, **__):
         raise OutputError("cannot write results to here: no space left on the device")
@@ -302,7 +302,7 @@ def test_shards_that_end_at_one_time(case, tmp_path):
 
 
 def test_a_whole_sweep_waits_for_no_shard(case, tmp_path):
-    from dem_cli.sweep.folder import opened
+    from dem_cli.app.sweep.folder import opened
 
     with opened(tmp_path / "out", False, False, "-1of2"), opened(tmp_path / "out", False, False, "-2of2"):
         code, _, err = dem("sweep", case, "-o", tmp_path / "out", "--fresh")
@@ -310,7 +310,7 @@ def test_a_whole_sweep_waits_for_no_shard(case, tmp_path):
 
 
 def test_files_of_several_writers_are_whole(tmp_path):
-    from dem_cli.output.atomic_file import whole
+    from dem_cli.results.output.atomic_file import whole
 
     with whole(tmp_path / "table.csv") as one, whole(tmp_path / "table.csv") as other:
         one.write_text("one")
@@ -320,7 +320,7 @@ def test_files_of_several_writers_are_whole(tmp_path):
 
 
 def test_two_sweeps_do_not_write_to_one_folder(case, tmp_path):
-    from dem_cli.sweep.folder import opened
+    from dem_cli.app.sweep.folder import opened
 
     with opened(tmp_path / "out", fresh=False, force=False):
         code, _, err = dem("sweep", case, "-o", tmp_path / "out")
@@ -393,7 +393,7 @@ contact_fraction = 0.3
 
 def test_many_runs_in_a_run_are_taken_up_too(case, tmp_path, monkeypatch):
     """A killed fragility study leaves its journal; the sweep goes on with it."""
-    from dem_cli.ensembles.batch import Batcher
+    from dem_cli.analyses.ensembles.batch import Batcher
 
     study = 'kind = "fragility"\nintensities = [0.2, 0.4, 0.6]\n'
     text = SMALL.replace("follow = 0.01\n", study).replace("courses = 2", "courses = 2\nbase_extension = 1.0")
@@ -458,6 +458,6 @@ def test_a_cluster_gives_the_same_table(case, tmp_path):
 
 def test_a_scheduler_that_is_not_there(case, tmp_path, monkeypatch):
     pytest.importorskip("distributed")
-    monkeypatch.setattr("dem_cli.sweep.cluster.PATIENCE", 0.5)
+    monkeypatch.setattr("dem_cli.app.sweep.cluster.PATIENCE", 0.5)
     code, _, err = dem("sweep", case, "-o", tmp_path / "out", "--scheduler", "tcp://127.0.0.1:9")
     assert (code, "no Dask scheduler answers" in err) == (2, True)

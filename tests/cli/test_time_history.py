@@ -13,13 +13,13 @@ from synthetic import wall_model
 from synthetic.runs import load
 from synthetic.shaking import COLLAPSE, shaken, shaking_frames, shaking_rows, shaking_summary
 
-from dem_cli.api import load_case
-from dem_cli.cli.main import main
-from dem_cli.cli.run import execute
-from dem_cli.cli.words import console
+from dem_cli.app.api import load_case
+from dem_cli.app.cli.main import main
+from dem_cli.app.cli.run import execute
+from dem_cli.app.cli.words import console
 from dem_cli.errors import SolverError
-from dem_cli.output.reader import read
-from dem_cli.output.summary import exit_code
+from dem_cli.results.output.reader import read
+from dem_cli.results.output.summary import exit_code
 
 CASE = """\
 [materials.stone]
@@ -185,7 +185,7 @@ def test_a_collapse_is_an_answer(tmp_path):
 
 
 def test_names_of_monitors(tmp_path):
-    from dem_cli.pipeline.monitor_names import monitor_names
+    from dem_cli.app.pipeline.monitor_names import monitor_names
 
     (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
     assert monitor_names(load_case(tmp_path / "case.toml").case.monitor) == NAMES

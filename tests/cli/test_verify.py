@@ -8,9 +8,9 @@ import xml.etree.ElementTree as ET
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.cli.main import main
-from dem_cli.verify.page import page
-from dem_cli.verify.records import load
+from dem_cli.app.cli.main import main
+from dem_cli.app.verify.page import page
+from dem_cli.app.verify.records import load
 
 BLOCK = """
 title = "A block on a floor"

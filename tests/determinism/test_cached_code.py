@@ -8,18 +8,18 @@ import subprocess
 import sys
 from itertools import product
 
-from dem_cli.kernels.compilation.machine_code import cache_folder
-from dem_cli.kernels.contact_forces import make_contact_forces
-from dem_cli.kernels.planar_forces import make_planar_forces
-from dem_cli.kernels.planar_profiles import make_profiled_forces
-from dem_cli.laws.mixed import mixed
-from dem_cli.laws.registry import LAWS
-from dem_cli.laws.softening import FRICTION_SOFTENING
+from dem_cli.core.kernels.compilation.machine_code import cache_folder
+from dem_cli.core.kernels.contact_forces import make_contact_forces
+from dem_cli.core.kernels.planar_forces import make_planar_forces
+from dem_cli.core.kernels.planar_profiles import make_profiled_forces
+from dem_cli.core.laws.mixed import mixed
+from dem_cli.core.laws.registry import LAWS
+from dem_cli.core.laws.softening import FRICTION_SOFTENING
 
 COLUMN = """\
 import sys
 from engine import block, rectangle, simulation, tables
-from dem_cli.kernels import records as slot
+from dem_cli.core.kernels import records as slot
 law, profile = sys.argv[1:]
 joint = {"law": law, "friction": 0.6} | ({"compression": 1e9} if law == "crushing" else {})
 if profile == "profile":

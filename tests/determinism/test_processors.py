@@ -14,7 +14,7 @@ PROGRAM = """
 import hashlib, json, sys
 from pathlib import Path
 from casefiles.stored import datasets, without_times
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 
 for number, (case, *sets) in enumerate(json.loads(sys.argv[1])):
     folder = Path(f"{number}")

@@ -13,7 +13,7 @@ from casefiles import CASES
 from casefiles.stored import datasets, without_times
 from engine import block, rectangle, running_wall, simulation, solve, tables
 
-from dem_cli.kernels import records as slot
+from dem_cli.core.kernels import records as slot
 
 
 def run(folder):

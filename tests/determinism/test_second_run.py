@@ -9,7 +9,7 @@ import sys
 import pytest
 from casefiles import CASES
 
-from dem_cli.kernels.compilation.kept_code import may_be_kept
+from dem_cli.core.kernels.compilation.kept_code import may_be_kept
 
 SHORT = 0.15  # s, of docs/data/verification.json
 KNOWN = json.loads((CASES.parent / "docs" / "data" / "verification.json").read_text(encoding="utf-8"))["cases"]
@@ -18,10 +18,10 @@ PROGRAM = """
 import sys
 from dataclasses import replace
 import dem_cli
-from dem_cli import api
+from dem_cli.app import api
 from dem_cli.analyses.solve import solve
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.records.ports import Observer
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.records.ports import Observer
 
 large, *cases = sys.argv[1:]
 tiles = replace(DEFAULT, detection=replace(DEFAULT.detection, tiled_from=1))

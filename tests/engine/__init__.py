@@ -11,21 +11,21 @@ import numpy as np
 import tomli_w
 
 from dem_cli.analyses import solve as solver
-from dem_cli.api import load_case
-from dem_cli.assembly.assemble import assembly
-from dem_cli.assembly.solver_request import solver_request
+from dem_cli.app.api import load_case
 from dem_cli.case.schema import Case
-from dem_cli.engine.kinematics import live_scale
-from dem_cli.engine.loops import compiled_advance
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.engine.simulation import Simulation
-from dem_cli.kernels import records as slot
-from dem_cli.model.model import Model
-from dem_cli.records.frames import Frame
-from dem_cli.records.history_rows import HistoryRow, Samples
-from dem_cli.records.ports import Observer
-from dem_cli.records.requests import SolverRequest
+from dem_cli.core.engine.kinematics import live_scale
+from dem_cli.core.engine.loops import compiled_advance
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import Frame
+from dem_cli.core.records.history_rows import HistoryRow, Samples
+from dem_cli.core.records.ports import Observer
+from dem_cli.core.records.requests import SolverRequest
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 MU, DENSITY = 0.6, 2000.0
 
@@ -150,7 +150,7 @@ def real_masses(sim: Simulation) -> None:
 
 def highest_frequency(sim: Simulation) -> float:
     """Of the present contacts, sticking [rad/s]; Gershgorin's bound."""
-    from dem_cli.engine.fictitious_masses import fictitious_masses
+    from dem_cli.core.engine.fictitious_masses import fictitious_masses
 
     needed = np.zeros_like(sim.loads.inverse_masses)
     fictitious_masses(sim.model, sim.joints, sim.bodies, sim.shape, 1.0, needed)

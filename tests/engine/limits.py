@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.limit.analysis import LimitLoads, limit_loads
-from dem_cli.model.model import Model
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.limit.analysis import LimitLoads, limit_loads
+from dem_cli.core.model.model import Model
 from engine import block, rectangle, scene, tables
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from dem_cli.analyses.registry import ANALYSES
-from dem_cli.laws.registry import LAWS
-from dem_cli.structures.registry import GENERATORS
-from dem_cli.tables.base_motion import MOTIONS
+from dem_cli.case.tables.base_motion import MOTIONS
+from dem_cli.core.laws.registry import LAWS
+from dem_cli.masonry.structures.registry import GENERATORS
 
 ROOT = Path(__file__).resolve().parents[2]
 LINES = [line for line in (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8").splitlines() if line[:1] == "*"]

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from parsed import nodes
 
-from dem_cli.links.registry import LINKS
-from dem_cli.output.resume.kept_records import RECORDS
+from dem_cli.core.links.registry import LINKS
+from dem_cli.results.output.resume.kept_records import RECORDS
 
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 NAME = re.compile(r"[A-Z]\w+")

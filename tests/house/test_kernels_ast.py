@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from parsed import nodes, tree
 
-from dem_cli.kernels.compilation.cache_folder import compiled_sources
+from dem_cli.core.kernels.compilation.cache_folder import compiled_sources
 
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
-BEHIND_IT = PACKAGE / "kernels" / "compilation"  # may name numba
+BEHIND_IT = PACKAGE / "core" / "kernels" / "compilation"  # may name numba
 TEXTS = {path: path.read_text(encoding="utf-8") for path in sorted(PACKAGE.rglob("*.py"))}
 TREES = {path: tree(path) for path, text in TEXTS.items() if "kernels.jit import" in text}  # users of the one door
 COMPILED = {"always_inline", "kernel", "inline"}  # the decorators of jit.py
@@ -86,6 +86,9 @@ def problems_of(function: ast.FunctionDef | ast.Lambda, name: str) -> list[str]:
     return problems
 
 
+WITH_KERNELS = ("kernels", "kernels/deformation", "kernels/tiles", "laws", "limit", "links")
+
+
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(PACKAGE).as_posix())
 def test_compiled_functions_hold_numbers_alone(path):
     found = [problem for function in compiled_functions(TREES[path]) for problem in problems_of(function, path.name)]
@@ -94,7 +97,7 @@ def test_compiled_functions_hold_numbers_alone(path):
 
 def test_kernels_are_looked_at_wherever_they_stand():
     rooms = {path.parent.relative_to(PACKAGE).as_posix() for path in SOURCES}
-    assert {"kernels", "kernels/deformation", "kernels/tiles", "laws", "limit", "links"} <= rooms
+    assert {f"core/{room}" for room in WITH_KERNELS} <= rooms
     assert len(SOURCES) > 30
 
 

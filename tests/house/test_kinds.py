@@ -7,7 +7,7 @@ import pytest
 from dem_cli.analyses import estimate, estimate_cost
 from dem_cli.analyses.registry import ANALYSES
 from dem_cli.case.plausibility import SHAKES
-from dem_cli.report import facts
+from dem_cli.results.report import facts
 
 
 @pytest.mark.parametrize("kind", ANALYSES)

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 from parsed import nodes, tree
 
-from dem_cli.engine.settings import DEFAULT
+from dem_cli.core.engine.settings import DEFAULT
 
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
-ROOMS = ("limit", "engine", "statics", "dynamics", "ensembles", "analyses")
+ROOMS = ("core/limit", "core/engine", "core/statics", "core/dynamics", "analyses")
 SOURCES = [path for room in ROOMS for path in sorted((PACKAGE / room).rglob("*.py"))]
 DEFAULTS = {"DEFAULT", "DEFAULT_LIMIT"}
 

@@ -10,7 +10,16 @@ import pytest
 from parsed import nodes
 
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
-OUTSIDE = ("statics", "dynamics", "ensembles", "analyses", "limit", "bench", "cli", "pipeline", "public")
+OUTSIDE = (
+    "core/statics",
+    "core/dynamics",
+    "analyses",
+    "core/limit",
+    "app/bench",
+    "app/cli",
+    "app/pipeline",
+    "app/public",
+)
 SOURCES = [path for room in OUTSIDE for path in sorted((PACKAGE / room).rglob("*.py"))]
 SIMULATIONS = {"sim", "simulation"}
 ARRAYS = {"bodies", "contacts", "loads", "control", "ledger", "joints", "geometry", "tracking"}

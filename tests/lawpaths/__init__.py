@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dem_cli.case.base import CaseModel
-from dem_cli.contact.joints import empty_contacts
-from dem_cli.kernels.contact_forces import make_contact_forces
-from dem_cli.kernels.jit import kernel
-from dem_cli.kernels.records import FixedJoints
-from dem_cli.laws.law import Law
-from dem_cli.laws.mixed import mixed, row
-from dem_cli.laws.registry import LAWS
-from dem_cli.tables.declared import table_of
+from dem_cli.case.tables.declared import table_of
+from dem_cli.core.contact.joints import empty_contacts
+from dem_cli.core.kernels.contact_forces import make_contact_forces
+from dem_cli.core.kernels.jit import kernel
+from dem_cli.core.kernels.records import FixedJoints
+from dem_cli.core.laws.law import Law
+from dem_cli.core.laws.mixed import mixed, row
+from dem_cli.core.laws.registry import LAWS
 
 LIKE = {2: ((0.0, 0.0), (0.0,)), 3: ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))}
 

@@ -7,7 +7,7 @@ import pytest
 from lawpaths import joint, ramp
 from pydantic import ValidationError
 
-from dem_cli.laws.displacement_path import drive
+from dem_cli.core.laws.displacement_path import drive
 
 KG_PER_CM2 = 9.80665e4  # [Pa]
 PEPERINO = {"jrc": 1.96, "jcs": 281.53 * KG_PER_CM2, "residual_angle_deg": 23.14}  # equation 5-5

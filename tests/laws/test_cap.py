@@ -7,7 +7,7 @@ import pytest
 from lawpaths import joint, ramp
 from pydantic import ValidationError
 
-from dem_cli.laws.displacement_path import drive
+from dem_cli.core.laws.displacement_path import drive
 
 KN, KS, AREA = 1.0e10, 4.0e9, 0.02
 FT, C, MU, FC, ENERGY = 0.2e6, 0.35e6, 0.75, 4.0e6, 18.0

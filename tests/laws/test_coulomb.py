@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from dem_cli.laws.displacement_path import drive
-from dem_cli.laws.registry import LAWS
+from dem_cli.core.laws.displacement_path import drive
+from dem_cli.core.laws.registry import LAWS
 
 KN, KS, MU = 2.0e6, 1.0e6, 0.6
 COULOMB = LAWS["coulomb"]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from lawpaths import joint, ramp
 
-from dem_cli.laws.displacement_path import drive
-from dem_cli.laws.mixed import mixed
+from dem_cli.core.laws.displacement_path import drive
+from dem_cli.core.laws.mixed import mixed
 
 KN, KS, AREA = 1.0e10, 5.0e9, 0.02
 FC, MU = 8.0e6, 0.6

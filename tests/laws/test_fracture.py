@@ -8,7 +8,7 @@ from lawpaths import joint, ramp
 from pydantic import ValidationError
 from scipy.special import lambertw
 
-from dem_cli.laws.displacement_path import drive
+from dem_cli.core.laws.displacement_path import drive
 
 KN, KS, AREA = 8.0e10, 3.6e10, 0.01
 FT, C, G1, G2, MU = 0.25e6, 0.35e6, 18.0, 125.0, 0.75  # a brick and mortar joint

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from lawpaths import joint, ramp, through_loop
 
-from dem_cli.laws.displacement_path import drive
-from dem_cli.laws.registry import LAWS
+from dem_cli.core.laws.displacement_path import drive
+from dem_cli.core.laws.registry import LAWS
 
 CLOSED, U = -(2.0**-16), 2.0**-15  # N = 32 at CLOSED; friction 0.5 slips at U / 2
 BOND = {"tension": 8.0, "cohesion": 20.0}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from lawpaths import joint, ramp, through_loop
 
-from dem_cli.laws.mixed import mixed, row
+from dem_cli.core.laws.mixed import mixed, row
 
 CLOSED, U = -(2.0**-16), 2.0**-15
 COULOMB, STEEP = joint("coulomb", friction=0.5), joint("coulomb", friction=0.75)

@@ -9,7 +9,7 @@ import pytest
 from lawpaths import joint, ramp
 from pydantic import ValidationError
 
-from dem_cli.laws.displacement_path import drive
+from dem_cli.core.laws.displacement_path import drive
 
 KN, KS, AREA = 2.0e9, 8.0e8, 0.05
 C, FT, MU = 0.4e6, 0.2e6, 0.75

@@ -9,8 +9,8 @@ import pytest
 from studies.laws import page as page_module
 from studies.laws.diagrams import PAGES
 
-from dem_cli.laws.registry import LAWS
-from dem_cli.tables.declared import table_of
+from dem_cli.case.tables.declared import table_of
+from dem_cli.core.laws.registry import LAWS
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "docs" / "laws"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from lawpaths import joint, ramp, through_loop
 
-from dem_cli.laws.displacement_path import drive
+from dem_cli.core.laws.displacement_path import drive
 
 KN, KS, MU = 2.0e6, 1.0e6, 0.5
 CLOSED = -(2.0**-16)  # gap [m]

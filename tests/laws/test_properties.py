@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lawpaths import joint
 
-from dem_cli.laws.decay import slip_on_decay
-from dem_cli.laws.displacement_path import drive
-from dem_cli.laws.mohr_coulomb import slip_while_dilating
+from dem_cli.core.laws.decay import slip_on_decay
+from dem_cli.core.laws.displacement_path import drive
+from dem_cli.core.laws.mohr_coulomb import slip_while_dilating
 
 U = 1e-5
 BOND = {"tension": 8.0, "cohesion": 20.0}

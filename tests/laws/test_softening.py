@@ -7,7 +7,7 @@ import pytest
 from lawpaths import joint, ramp
 from pydantic import ValidationError
 
-from dem_cli.laws.displacement_path import drive
+from dem_cli.core.laws.displacement_path import drive
 
 KN, KS, N = 2.0e9, 1.0e9, 1.0e4
 CLOSED = -N / KN

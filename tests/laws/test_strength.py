@@ -6,13 +6,13 @@ import math
 
 import pytest
 
-from dem_cli.laws.barton import BartonJoint
-from dem_cli.laws.coulomb import CoulombJoint
-from dem_cli.laws.fracture import FractureJoint
-from dem_cli.laws.mohr_coulomb import MohrCoulombJoint
-from dem_cli.laws.rate import RateJoint
-from dem_cli.laws.registry import LAWS
-from dem_cli.laws.strength import KEYS, reduced, strengths
+from dem_cli.core.laws.barton import BartonJoint
+from dem_cli.core.laws.coulomb import CoulombJoint
+from dem_cli.core.laws.fracture import FractureJoint
+from dem_cli.core.laws.mohr_coulomb import MohrCoulombJoint
+from dem_cli.core.laws.rate import RateJoint
+from dem_cli.core.laws.registry import LAWS
+from dem_cli.core.laws.strength import KEYS, reduced, strengths
 
 ALL = tuple(KEYS)
 MORTAR = MohrCoulombJoint(

@@ -1,4 +1,4 @@
-"""Benchmark structures as plain polygons, written apart from dem_cli.structures: lists of (n, 2) arrays."""
+"""Benchmark structures as plain polygons, written apart from dem_cli.masonry.structures: lists of (n, 2) arrays."""
 
 from __future__ import annotations
 

@@ -19,13 +19,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from dem_cli.engine.job import Outcome
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.ensembles.case_job import CaseJob
-from dem_cli.model.model import Model
-from dem_cli.records.ports import Observer
-from dem_cli.records.statuses import FALLS
-from dem_cli.statics.equilibrium import settle
+from dem_cli.core.engine.job import Outcome
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.analyses.ensembles.case_job import CaseJob
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.ports import Observer
+from dem_cli.core.records.statuses import FALLS
+from dem_cli.core.statics.equilibrium import settle
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
@@ -59,25 +59,25 @@ def _limit(summary"""
 ROWS = "    rows += [*curve_rows(summary), *safety_rows(summary)]\n"
 LINE = """    rows += [("weight", f"{summary['weight']:.4g} N")] if "weight" in summary else []\n"""
 REGISTRY, FIRST = "dem_cli/analyses/registry.py", "    for analysis in (\n"
-FACTS = "dem_cli/report/facts.py"
+FACTS = "dem_cli/results/report/facts.py"
 
 RECIPE = Recipe(
     section="Add a kind of analysis",
     name="weight",
     files={"dem_cli/analyses/weight.py": RUN},
     lines=(
-        ("dem_cli/tables/analysis.py", "class LiveAnalysis(AnalysisBase):\n", TABLE),
+        ("dem_cli/case/tables/analysis.py", "class LiveAnalysis(AnalysisBase):\n", TABLE),
         (REGISTRY, "    TimeHistoryAnalysis,\n)", "    TimeHistoryAnalysis,\n    WeightAnalysis,\n)"),
         (REGISTRY, "ANALYSES: dict[str, Analysis] = {\n", LOADER),
         (REGISTRY, FIRST, f'{FIRST}        Analysis("weight", WeightAnalysis, _weight),\n'),
-        ("dem_cli/cli/words/console.py", ROWS, ROWS + LINE),
+        ("dem_cli/app/cli/words/console.py", ROWS, ROWS + LINE),
         (FACTS, '"safety": "Factor of safety",', '"safety": "Factor of safety", "weight": "Weight",'),
         (FACTS, "_ANSWERS = {\n", '_ANSWERS = {\n    "weight": _weight,\n'),
         (FACTS, "def _limit(summary", ANSWER),
-        ("dem_cli/output/summary.py", '    "vary",\n', '    "weight",\n    "vary",\n'),
+        ("dem_cli/results/output/summary.py", '    "vary",\n', '    "weight",\n    "vary",\n'),
         ("dem_cli/analyses/estimate_cost.py", "STEPS = {", 'STEPS = {"weight": (500, 50_000),'),
         ("dem_cli/case/explain.py", "DOC_PAGES = {", 'DOC_PAGES = {"analysis.weight": "docs/numerics.md",'),
-        ("dem_cli/pipeline/monitor_names.py", 'STATIC = ("gravity",', 'STATIC = ("weight", "gravity",'),
+        ("dem_cli/app/pipeline/monitor_names.py", 'STATIC = ("gravity",', 'STATIC = ("weight", "gravity",'),
         ("docs/glossary.md", "`gravity`, `cycle`,", "`gravity`, `weight`, `cycle`,"),
     ),
     commands=(("scripts/draw_tree",), ("scripts/docs", "--write")),
@@ -85,7 +85,7 @@ RECIPE = Recipe(
         "tests/house/test_imports.py::test_only_the_arrows_of_the_house[analyses.weight]", "tests/house/test_kinds.py",
     ),
     left_out=(
-        "dem_cli/records/frames.py", "dem_cli/case/plausibility.py", "dem_cli/output/layout.py",
-        "dem_cli/records/ports.py",
+        "dem_cli/core/records/frames.py", "dem_cli/case/plausibility.py", "dem_cli/results/output/layout.py",
+        "dem_cli/core/records/ports.py",
     ),
 )  # fmt: skip

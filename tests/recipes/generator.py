@@ -13,9 +13,9 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from dem_cli.case.base import KeyProblem, Positive, StructureBase
-from dem_cli.geometry.polygon import rectangle
-from dem_cli.model.blocks import Block
-from dem_cli.structures.bases import base_block
+from dem_cli.core.geometry.polygon import rectangle
+from dem_cli.core.model.blocks import Block
+from dem_cli.masonry.structures.bases import base_block
 
 
 class SteppedPier(StructureBase):
@@ -80,7 +80,7 @@ from __future__ import annotations
 import pytest
 from pydantic import ValidationError
 
-from dem_cli.structures import stepped_pier
+from dem_cli.masonry.structures import stepped_pier
 
 KEYS = {"block": (1.0, 0.4), "courses": 3, "step": 0.2}
 
@@ -97,26 +97,34 @@ def test_nothing_left_is_refused():
         stepped_pier.SteppedPier(**KEYS | {"step": 0.5})
 '''
 
-KIND = 'Generator("stepped-pier", "SteppedPier", "dem_cli.structures.stepped_pier"),'
+KIND = 'Generator("stepped-pier", "SteppedPier", "dem_cli.masonry.structures.stepped_pier"),'
 
 RECIPE = Recipe(
     section="Add a generator",
     name="stepped-pier",
     files={
-        "dem_cli/structures/stepped_pier.py": GENERATOR,
-        "dem_cli/cli/templates/stepped-pier.toml": TEMPLATE,
+        "dem_cli/masonry/structures/stepped_pier.py": GENERATOR,
+        "dem_cli/app/cli/templates/stepped-pier.toml": TEMPLATE,
         "tests/unit/structures/test_stepped_pier.py": TEST,
     },
     lines=(
-        ("dem_cli/structures/registry.py", "    for generator in (\n", f"    for generator in (\n        {KIND}\n"),
-        ("dem_cli/cli/new.py", "KIND: arch, arched-wall,", "KIND: arch, arched-wall, stepped-pier,"),
+        (
+            "dem_cli/masonry/structures/registry.py",
+            "    for generator in (\n",
+            f"    for generator in (\n        {KIND}\n",
+        ),
+        ("dem_cli/app/cli/new.py", "KIND: arch, arched-wall,", "KIND: arch, arched-wall, stepped-pier,"),
         ("docs/guide/install.md", "`wall-section`", "`stepped-pier`, `wall-section`"),
-        ("dem_cli/assembly/imperfect.py", 'LEVEL = ("wall", "column")', 'LEVEL = ("wall", "column", "stepped-pier")'),
+        (
+            "dem_cli/masonry/assembly/imperfect.py",
+            'LEVEL = ("wall", "column")',
+            'LEVEL = ("wall", "column", "stepped-pier")',
+        ),
         ("docs/glossary.md", "`arch`, `bridge`, `drums`", "`arch`, `stepped-pier`, `bridge`, `drums`"),
     ),
     commands=(("scripts/draw_tree",), ("scripts/docs", "--write")),
     tests=(
-        "tests/house/test_imports.py::test_only_the_arrows_of_the_house[structures.stepped_pier]",
+        "tests/house/test_imports.py::test_only_the_arrows_of_the_house[masonry.structures.stepped_pier]",
         "tests/unit/structures/test_stepped_pier.py", "tests/cli/test_guide.py::test_all_templates_are_named",
         "tests/cli/test_commands.py::test_there_is_a_template_for_every_generator",
         "tests/cli/test_commands.py::test_what_new_prints_passes_check_as_it_is[stepped-pier]",

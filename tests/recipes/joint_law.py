@@ -18,11 +18,11 @@ from typing import Literal
 import numpy as np
 
 from dem_cli.declarations import Positive, parameter
-from dem_cli.kernels.jit import inline
-from dem_cli.kernels.vec import axpy, norm, scale
-from dem_cli.laws.envelope import Envelope, envelope
-from dem_cli.laws.law import Law
-from dem_cli.laws.stiffness import StiffJoint
+from dem_cli.core.kernels.jit import inline
+from dem_cli.core.kernels.vec import axpy, norm, scale
+from dem_cli.core.laws.envelope import Envelope, envelope
+from dem_cli.core.laws.law import Law
+from dem_cli.core.laws.stiffness import StiffJoint
 
 
 class TrescaJoint(StiffJoint):
@@ -69,7 +69,7 @@ from __future__ import annotations
 import numpy as np
 from lawpaths import joint, ramp
 
-from dem_cli.laws.displacement_path import drive
+from dem_cli.core.laws.displacement_path import drive
 
 AREA, STRENGTH = 0.02, 5e4
 TRESCA = joint("tresca", shear_strength=STRENGTH)
@@ -94,12 +94,16 @@ RECIPE = Recipe(
     section="Add a joint law",
     name="tresca",
     files={
-        "dem_cli/laws/tresca.py": LAW,
+        "dem_cli/core/laws/tresca.py": LAW,
         "tests/laws/test_tresca.py": TEST,
         "scripts/studies/laws/notes/tresca.md.j2": "τ = 50 kPa.\n\n## Notes\n\n* It has no friction.\n",
     },
     lines=(
-        ("dem_cli/laws/registry.py", "    {\n", '    {\n        "tresca": ("dem_cli.laws.tresca", "TRESCA"),\n'),
+        (
+            "dem_cli/core/laws/registry.py",
+            "    {\n",
+            '    {\n        "tresca": ("dem_cli.core.laws.tresca", "TRESCA"),\n',
+        ),
         (
             "tests/laws/test_loop.py",
             "JOINTS = {\n", 'JOINTS = {\n    "tresca": joint("tresca", shear_strength=16.0),\n'
@@ -118,8 +122,8 @@ RECIPE = Recipe(
     ),
     commands=(("scripts/study", "laws", "tresca", "--write"), ("scripts/draw_tree",), ("scripts/docs", "--write")),
     tests=(
-        "tests/house/test_kernels_ast.py::test_compiled_functions_hold_numbers_alone[laws/tresca.py]",
-        "tests/house/test_imports.py::test_only_the_arrows_of_the_house[laws.tresca]",
+        "tests/house/test_kernels_ast.py::test_compiled_functions_hold_numbers_alone[core/laws/tresca.py]",
+        "tests/house/test_imports.py::test_only_the_arrows_of_the_house[core.laws.tresca]",
         "tests/laws/test_tresca.py", "tests/laws/test_strength.py", "tests/laws/test_pages.py",
         "tests/laws/test_loop.py::test_every_law_is_here", "tests/laws/test_loop.py::test_planar_twin[tresca]",
         "tests/laws/test_loop.py::test_work_is_elastic_energy_and_what_is_lost[tresca-2]",

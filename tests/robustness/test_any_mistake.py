@@ -10,11 +10,11 @@ import tomli_w
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from dem_cli.api import build_model, load_case
+from dem_cli.app.api import build_model, load_case
 from dem_cli.errors import DemError
 
 ROOT = Path(__file__).resolve().parents[2]
-TEXTS = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "dem_cli/cli/templates").glob("*.toml"))]
+TEXTS = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "dem_cli/app/cli/templates").glob("*.toml"))]
 EXTRA = """
 [[interface]]
 between = ["a", "b"]

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 
 TABLE = tomllib.loads(Path(__file__).with_name("bad_cases.toml").read_text(encoding="utf-8"))
 ROOT = Path(__file__).resolve().parents[2]

@@ -17,7 +17,7 @@ import pytest
 import synthetic.runs
 
 from dem_cli.errors import UsageError
-from dem_cli.output.reader import read
+from dem_cli.results.output.reader import read
 
 RUNS = Path(synthetic.runs.__file__)
 ROOT = RUNS.parents[2]

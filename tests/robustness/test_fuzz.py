@@ -84,7 +84,7 @@ def test_what_is_a_find(tmp_path, monkeypatch, said, kind, code, found):
         print("some words", file=fuzzing.sys.stderr)
         raise SystemExit(code)
 
-    monkeypatch.setattr("dem_cli.cli.main.main", main)
+    monkeypatch.setattr("dem_cli.app.cli.main.main", main)
     monkeypatch.setattr(fuzzing, "wrong_arrays", lambda file: [])
     wrong = fuzzing.outcome(kind, "", tmp_path)[1]
     assert len(wrong) == len(found)
@@ -108,7 +108,7 @@ def test_a_case_that_has_had_its_time_is_cut_off(tmp_path, monkeypatch):
         while True:
             pass
 
-    monkeypatch.setattr("dem_cli.cli.main.main", main)
+    monkeypatch.setattr("dem_cli.app.cli.main.main", main)
     ended, wrong, used = fuzzing.outcome("checks", "", tmp_path, limit=0.1)
     assert (ended, wrong) == ("out of time", ["takes more than 0.1 CPU s"])
     assert used < 3.0

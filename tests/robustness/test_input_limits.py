@@ -13,7 +13,7 @@ from studies.site.limits import LIMITS
 from synthetic.pages import wall
 
 from dem_cli import input_limits
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 from dem_cli.input_limits import (
     MOST_CORNERS,
     MOST_MISTAKES,

@@ -16,8 +16,8 @@ import pytest
 from studies.interrupts.commands import COMMANDS
 from studies.interrupts.trial import gone_on, interrupted, started
 
+from dem_cli.app.sweep.pool import GRACE, each_done
 from dem_cli.interrupts import Interrupts, asked, at_once, insist, look
-from dem_cli.sweep.pool import GRACE, each_done
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals as POSIX has them")
 
@@ -141,7 +141,7 @@ def test_nohup_stays_nohup():
 
 HELD = """
 import concurrent.futures._base as futures, os, signal, time
-from dem_cli.ensembles.batch import Batch, Batcher, ShakingTrial, each
+from dem_cli.analyses.ensembles.batch import Batch, Batcher, ShakingTrial, each
 from dem_cli.interrupts import Interrupts
 
 class Endless:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from engine import block, mirrored, rectangle, scene, simulation, solve, tables
 
-from dem_cli.engine import measures
+from dem_cli.core.engine import measures
+from dem_cli.core.kernels import records as slot
 from dem_cli.errors import CaseError
-from dem_cli.kernels import records as slot
 
 PUSH = {"kind": "pushover", "direction": [1.0, 0.0], "pattern": "mass", "resolution": 0.002}
 GRAVITY = {"kind": "gravity"}
@@ -187,8 +187,8 @@ def test_gravity_below_the_strength_crushes_nothing(count):
     strength = 1.03 * count * WEIGHT
     case = tower(count, {"law": "crushing", "friction": 0.6, "compression": strength}, GRAVITY)
     assert solve(case)[0]["status"] == "ok"
-    from dem_cli.engine.budget import Budget
-    from dem_cli.statics.equilibrium import stand
+    from dem_cli.core.engine.budget import Budget
+    from dem_cli.core.statics.equilibrium import stand
 
     sim = simulation(case)
     assert stand(sim, Budget(1_000_000)).state == "equilibrium"

@@ -13,15 +13,15 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from dem_cli import api
-from dem_cli.cli.main import main
+from dem_cli.app import api
+from dem_cli.app.cli.main import main
+from dem_cli.app.pipeline.batches import BatchOptions
+from dem_cli.app.pipeline.execution import Destination, run_case
 from dem_cli.interrupts import Interrupts
-from dem_cli.output.resume.checkpoints import _HEADER, Checkpoints, _header
-from dem_cli.output.resume.kept_objects import encoded
-from dem_cli.output.resume.kept_values import packed, unpacked
-from dem_cli.output.resume.stages import Keeping
-from dem_cli.pipeline.batches import BatchOptions
-from dem_cli.pipeline.execution import Destination, run_case
+from dem_cli.results.output.resume.checkpoints import _HEADER, Checkpoints, _header
+from dem_cli.results.output.resume.kept_objects import encoded
+from dem_cli.results.output.resume.kept_values import packed, unpacked
+from dem_cli.results.output.resume.stages import Keeping
 
 CASE = Path(__file__).resolve().parents[2] / "cases" / "verification" / "settlement_group.toml"
 KILLED_AT = "2+", 3  # at this checkpoint of the second stage: some of what it told is told again

@@ -12,7 +12,7 @@ from studies.solution import from_tables
 from studies.stress.random_structures import generator, page, record, study, verdicts
 from studies.stress.random_structures.admissible import LoadedBodies, associated_load, lowest_load
 
-from dem_cli import api
+from dem_cli.app import api
 
 CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
 SEEDS = range(12)  # of development; those of the page start at 2000

@@ -11,7 +11,7 @@ import tomli_w
 from click.testing import CliRunner
 from engine import block, rectangle, tables, turned
 
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 from dem_cli.errors import CaseError, SolverError
 
 PULSE = {"kind": "pulse", "shape": "sine", "amplitude": 7.0, "frequency": 2.0}

@@ -21,7 +21,7 @@ import click
 import tomli_w
 from click.testing import CliRunner
 
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[2]
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.model.model import Model
-from dem_cli.records.frames import ContactRecord, Frame
-from dem_cli.records.history_rows import Energy, HistoryRow
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import ContactRecord, Frame
+from dem_cli.core.records.history_rows import Energy, HistoryRow
 
 LENGTH, HEIGHT, DEPTH, DENSITY = 0.040, 0.0175, 0.080, 2143.0
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from dem_cli.api import make_case_model
-from dem_cli.assembly.assemble import assembly
+from dem_cli.app.api import make_case_model
 from dem_cli.case.reader import CaseSource, validate
+from dem_cli.masonry.assembly.assemble import assembly
 
 
 def floating(corners: np.ndarray, level: float):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from dem_cli.output.provenance import provenance
-from dem_cli.output.store import ResultWriter
+from dem_cli.results.output.provenance import provenance
+from dem_cli.results.output.store import ResultWriter
 from synthetic import history_rows, wall_frames, wall_model, wall_summary
 
 HOSTILE = "<script>document.title='hacked'</script>"

@@ -77,9 +77,9 @@ def solver(n_frames: int = 6, pause: float = 0.0, fail_at: int = -1, copies: int
 
 def main() -> None:
     """Modes: quick, slow (one frame every 50 ms), huge (2,000 frames)."""
-    from dem_cli.cli.run import execute
+    from dem_cli.app.cli.run import execute
     from dem_cli.errors import DemError
-    from dem_cli.output import store  # noqa: F401  another user may not see the packages any more
+    from dem_cli.results.output import store  # noqa: F401  another user may not see the packages any more
 
     loaded, output, mode = load(Path(sys.argv[1])), Path(sys.argv[2]), sys.argv[3]
     if os.environ.get("AS_USER"):

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from dem_cli.model.model import Model
-from dem_cli.output.store import ResultWriter
-from dem_cli.records.frames import Frame
-from dem_cli.records.history_rows import Energy, HistoryRow, Samples
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import Frame
+from dem_cli.core.records.history_rows import Energy, HistoryRow, Samples
+from dem_cli.results.output.store import ResultWriter
 from synthetic import LENGTH, bed_contacts, wall_model
 
 DURATION, AMPLITUDE, FREQUENCY, COLLAPSE = 5.0, 3.0, 2.0, 4.2  # s, m/s2, Hz, s

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from shapely.geometry import Polygon
 
-from dem_cli.assembly.assemble import assembly
-from dem_cli.assembly.validate import problems
-from dem_cli.contact.between import StartJoints
-from dem_cli.geometry.polyhedron import newell
-from dem_cli.geometry.rotation import beside
-from dem_cli.model.model import Model
-from dem_cli.model.places import undeformed
+from dem_cli.core.contact.between import StartJoints
+from dem_cli.core.geometry.polyhedron import newell
+from dem_cli.core.geometry.rotation import beside
+from dem_cli.core.model.model import Model
+from dem_cli.core.model.places import undeformed
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.assembly.validate import problems
 from synthetic.spatial_case import spatial_case
 
 

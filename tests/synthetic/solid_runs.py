@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from dem_cli.geometry.polyhedron import box, prism
-from dem_cli.geometry.rotation import matrices, quaternions, tangents_of
-from dem_cli.model.model import Model
-from dem_cli.output.paraview.vertices import rest_vertices
-from dem_cli.output.store import ResultWriter
-from dem_cli.records.frames import ContactRecord, Frame
+from dem_cli.core.geometry.polyhedron import box, prism
+from dem_cli.core.geometry.rotation import matrices, quaternions, tangents_of
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import ContactRecord, Frame
+from dem_cli.results.output.paraview.vertices import rest_vertices
+from dem_cli.results.output.store import ResultWriter
 from synthetic import history_rows, wall_summary
 from synthetic.spatial import spatial_model
 

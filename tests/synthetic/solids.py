@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.geometry.rotation import frames
-from dem_cli.kernels.records import Joints, MovingJoints
-from dem_cli.model.block_measures import BlockMeasures
-from dem_cli.model.model import Model
+from dem_cli.core.geometry.rotation import frames
+from dem_cli.core.kernels.records import Joints, MovingJoints
+from dem_cli.core.model.block_measures import BlockMeasures
+from dem_cli.core.model.model import Model
 
 DEPTH = 0.4  # of extruded structures [m]
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dem_cli.geometry.polyhedron import Polyhedron, prisms
-from dem_cli.model.bodies import bodies_of
-from dem_cli.model.model import Model
+from dem_cli.core.geometry.polyhedron import Polyhedron, prisms
+from dem_cli.core.model.bodies import bodies_of
+from dem_cli.core.model.model import Model
 
 Shape = Polyhedron | Sequence[Polyhedron]
 

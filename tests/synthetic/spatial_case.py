@@ -6,7 +6,7 @@ import copy
 from pathlib import Path
 from typing import Any
 
-from dem_cli.api import make_case_model
+from dem_cli.app.api import make_case_model
 from dem_cli.case.reader import CaseSource, validate
 from dem_cli.case.schema import Case
 

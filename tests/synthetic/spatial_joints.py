@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from dem_cli.contact.joints import JointArrays, JointProperties
-from dem_cli.contact.layout import PointLayout
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.geometry.polyhedron import Polyhedron, box, hull
-from dem_cli.geometry.rotation import matrices
-from dem_cli.model.model import Model
-from dem_cli.model.scales import smallest_edge
+from dem_cli.core.contact.joints import JointArrays, JointProperties
+from dem_cli.core.contact.layout import PointLayout
+from dem_cli.core.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.core.geometry.polyhedron import Polyhedron, box, hull
+from dem_cli.core.geometry.rotation import matrices
+from dem_cli.core.model.model import Model
+from dem_cli.core.model.scales import smallest_edge
 
 KN, KS = 1e9, 4e8
 

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from dem_cli.geometry.polyhedron import box
-from dem_cli.geometry.rotation import quaternions
-from dem_cli.model.model import Model
-from dem_cli.output.store import ResultWriter
-from dem_cli.records.frames import ContactRecord, Frame
-from dem_cli.records.history_rows import Energy, HistoryRow, Samples
+from dem_cli.core.geometry.polyhedron import box
+from dem_cli.core.geometry.rotation import quaternions
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import ContactRecord, Frame
+from dem_cli.core.records.history_rows import Energy, HistoryRow, Samples
+from dem_cli.results.output.store import ResultWriter
 from synthetic import wall_summary
 from synthetic.solid_runs import box_contacts
 from synthetic.spatial import spatial_model

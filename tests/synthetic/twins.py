@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.engine.simulation import Simulation
-from dem_cli.kernels.fixed_joints import FixedJoints
-from dem_cli.kernels.records import Bodies, Contacts, Loads
-from dem_cli.kernels.tiles.joint_tiles import NO_TILES
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.kernels.fixed_joints import FixedJoints
+from dem_cli.core.kernels.records import Bodies, Contacts, Loads
+from dem_cli.core.kernels.tiles.joint_tiles import NO_TILES
 
 LIKE = {2: (0.0,) * 2, 3: (0.0,) * 3}
 LIKE_ROTATION = {2: (0.0,), 3: (0.0,) * 3}

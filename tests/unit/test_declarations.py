@@ -10,19 +10,20 @@ from typing import Annotated, ClassVar, Literal
 import pytest
 from pydantic import BaseModel, ValidationError
 
-from dem_cli.api import load_case
-from dem_cli.assembly.solver_request import solver_request
+from dem_cli.app.api import load_case
+from dem_cli.case.tables.declared import table_of
+from dem_cli.core.laws.fracture import FractureJoint
 from dem_cli.declarations import KeyProblem, Limits, Parameters, Positive, SpaceVector, parameter
-from dem_cli.laws.fracture import FractureJoint
-from dem_cli.tables.declared import table_of
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
 ALONE = """
 import sys
-import dem_cli.laws.registry, dem_cli.laws.mohr_coulomb, dem_cli.links.registry, dem_cli.links.tie, dem_cli.links.bar
-import dem_cli.motion.motion, dem_cli.motion.synthetic, dem_cli.motion.eurocode_suites
-from dem_cli.laws.displacement_path import drive
-law = dem_cli.laws.registry.LAWS["mohr-coulomb"]
+import dem_cli.core.laws.registry, dem_cli.core.laws.mohr_coulomb
+import dem_cli.core.links.registry, dem_cli.core.links.tie, dem_cli.core.links.bar
+import dem_cli.core.motion.motion, dem_cli.core.motion.synthetic, dem_cli.core.motion.eurocode_suites
+from dem_cli.core.laws.displacement_path import drive
+law = dem_cli.core.laws.registry.LAWS["mohr-coulomb"]
 joint = law.parameters(friction=0.5, cohesion=1e4)
 print(float(drive(law, joint, [[-1e-6, 0.0], [-1e-6, 2.0**-20]], kn=1e9).shear[1, 0]), joint.coefficient)
 print(sorted({"pydantic", "h5py", "click", "rich", "matplotlib"} & {name.split(".")[0] for name in sys.modules}))

@@ -11,8 +11,8 @@ from studies import storage
 from studies.appendix_b import failure_loads, softness, sweep
 from studies.appendix_b.study import STUDY
 
-from dem_cli.api import load_case
-from dem_cli.assembly.assemble import assembly
+from dem_cli.app.api import load_case
+from dem_cli.masonry.assembly.assemble import assembly
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -10,7 +10,7 @@ from reference import book, value
 from studies.paper001 import walls
 from studies.paper001.house import PUSHED, SHAKEN
 
-from dem_cli import api
+from dem_cli.app import api
 
 LEMOS = book("lemos_2019_wall")
 HOUSE = book("lemos_stone_house")

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from engine import block, rectangle, scene, simulation, solve, tables
 
-from dem_cli.dynamics.frequencies import modes, system
-from dem_cli.engine import measures
-from dem_cli.engine.budget import Budget
-from dem_cli.engine.dynamic import DynamicSimulation
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.viscous import Damping
-from dem_cli.kernels.records import Ground
-from dem_cli.links.link import FORCE
-from dem_cli.statics.equilibrium import stand
+from dem_cli.core.dynamics.frequencies import modes, system
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.engine.dynamic import DynamicSimulation
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.viscous import Damping
+from dem_cli.core.kernels.records import Ground
+from dem_cli.core.links.link import FORCE
+from dem_cli.core.statics.equilibrium import stand
 
 CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
 CEILING = block("ceiling", rectangle(-1, 1, 1, 2), fixed=True)

@@ -11,10 +11,10 @@ from oracle.no_tension_joint import Panel
 
 from dem_cli.analyses import bound_beside
 from dem_cli.analyses.bound_beside import Moved, in_words, is_above, status_beside
-from dem_cli.cli.words.console import answer_rows
-from dem_cli.output.summary import exit_code
-from dem_cli.records.statuses import ABOVE
-from dem_cli.statics.failure_load import LoadSearch
+from dem_cli.app.cli.words.console import answer_rows
+from dem_cli.core.records.statuses import ABOVE
+from dem_cli.core.statics.failure_load import LoadSearch
+from dem_cli.results.output.summary import exit_code
 
 BASE = block("base", rectangle(-2, -1, 3, 0), fixed=True)
 

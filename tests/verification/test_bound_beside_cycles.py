@@ -6,8 +6,8 @@ import pytest
 from engine import block, rectangle, solve, tables
 
 from dem_cli.analyses import bound_beside
-from dem_cli.output.summary import exit_code
-from dem_cli.records.statuses import ABOVE
+from dem_cli.core.records.statuses import ABOVE
+from dem_cli.results.output.summary import exit_code
 
 BASE = block("base", rectangle(-2, -1, 3, 0), fixed=True)
 # A right-angled triangle of 0.3 × 1 m, upright side on the left, its centroid 0.1 m from there, a third of 1 m up:

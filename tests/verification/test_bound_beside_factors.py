@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from engine import block, rectangle, solve, tables
 
-from dem_cli.ensembles.static_bound import Bound
-from dem_cli.output.summary import exit_code
-from dem_cli.records.statuses import ABOVE
+from dem_cli.analyses.ensembles.static_bound import Bound
+from dem_cli.core.records.statuses import ABOVE
+from dem_cli.results.output.summary import exit_code
 
 BASE = block("base", rectangle(-2, -1, 4, 0), fixed=True)
 SAFETY = {"kind": "safety", "load": 0.2, "direction": [1.0, 0.0]}

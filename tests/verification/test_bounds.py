@@ -16,7 +16,7 @@ from studies.bounds.study import STUDY
 from studies.places import DOCS
 from studies.stress.random_structures.admissible import LoadedBodies, associated_load, lowest_load
 
-from dem_cli.limit.reduced import NONE
+from dem_cli.core.limit.reduced import NONE
 
 VERIFICATION = CASES / "verification"
 SAME = 2e-6  # relative, of loads that are the same

@@ -8,10 +8,10 @@ from engine import block, rectangle, simulation, solve, tables
 from scipy.linalg import eigvalsh
 from scipy.sparse import csr_array, diags_array
 
-from dem_cli.arithmetic.sparse_systems import SymmetricFactors, most_negative
-from dem_cli.dynamics.stability import buckles
-from dem_cli.engine.budget import Budget
-from dem_cli.statics.equilibrium import stand
+from dem_cli.core.arithmetic.sparse_systems import SymmetricFactors, most_negative
+from dem_cli.core.dynamics.stability import buckles
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.statics.equilibrium import stand
 
 SIDE, KN, DENSITY = 0.3, 1e9, 100.0
 

@@ -7,13 +7,13 @@ import pytest
 from engine import Records, block, rectangle, scene, solve, tables
 from synthetic.spatial_case import extruded_tables
 
-from dem_cli.engine import measures
-from dem_cli.engine.job import Job
-from dem_cli.statics.bilinear import bilinear
-from dem_cli.statics.compliance import compliance
-from dem_cli.statics.displacement_control import CapacityCurve, CurvePoint, DisplacementControl, trace
-from dem_cli.statics.equilibrium import stand
-from dem_cli.statics.implicit_control import ImplicitControl
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.job import Job
+from dem_cli.core.statics.bilinear import bilinear
+from dem_cli.core.statics.compliance import compliance
+from dem_cli.core.statics.displacement_control import CapacityCurve, CurvePoint, DisplacementControl, trace
+from dem_cli.core.statics.equilibrium import stand
+from dem_cli.core.statics.implicit_control import ImplicitControl
 
 BASE = block("base", rectangle(-2, -1, 3, 0), fixed=True)
 

@@ -7,10 +7,10 @@ import pytest
 from engine import scene, solve
 from studies.space.structures import box, tables
 
-from dem_cli.assembly.validate import profile_problems
-from dem_cli.contact.caps import half_profile, slopes
-from dem_cli.contact.layout import PointLayout
-from dem_cli.laws.profile import Profile
+from dem_cli.core.contact.caps import half_profile, slopes
+from dem_cli.core.contact.layout import PointLayout
+from dem_cli.core.laws.profile import Profile
+from dem_cli.masonry.assembly.validate import profile_problems
 
 WIDE, DEEP, HIGH = 0.6, 0.4, 1.0
 FIVE = {"sides": 5, "aperture": 0.004}

@@ -16,8 +16,8 @@ from casefiles import (
     scene,
 )
 
-from dem_cli.api import load_case
-from dem_cli.assembly.assemble import assembly
+from dem_cli.app.api import load_case
+from dem_cli.masonry.assembly.assemble import assembly
 
 REFERENCED = [path for path in FILES if failure_load(path) and known_to_the_oracle(path)]
 GUESSES = {CASES / "verification" / f"wall_21_imperfect_{letter}.toml": slack for letter, slack in

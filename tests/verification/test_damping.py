@@ -90,7 +90,7 @@ def test_stiffness_damping_does_not_shrink_the_time_step(first_frequency):
 
 
 def test_a_pair_of_frequencies_has_the_ratio_at_both():
-    from dem_cli.tables.damping import RayleighDamping
+    from dem_cli.case.tables.damping import RayleighDamping
 
     mass, stiffness = RayleighDamping(ratio=0.03, frequencies=(5.0, 40.0)).coefficients()
     for frequency in (5.0, 40.0):
@@ -197,7 +197,7 @@ def test_a_restitution_out_of_reach_is_refused():
 
 def test_restitution_of_a_structure_far_from_the_origin():
     """Ends of the joint were counted from another origin than the block: 0.9995 instead of 0.7."""
-    from dem_cli.dynamics.history import damping_of_start
+    from dem_cli.core.dynamics.history import damping_of_start
 
     for x in (0.0, 1000.0):
         stones = block("base", rectangle(x - 3, -1, x + 3, 0), fixed=True), block("b", rectangle(x, 0, x + 0.5, 1))

@@ -11,15 +11,15 @@ from engine import block, rectangle, tables
 from oracle.maxwell import of_mode
 from scipy.optimize import least_squares
 
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.dynamics.frequencies import modes, system
-from dem_cli.dynamics.history import damping_of_start
-from dem_cli.dynamics.restitution import housner, reference_block, rocked
-from dem_cli.engine.properties import joint_properties
-from dem_cli.engine.settings import DEFAULT
+from dem_cli.core.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.core.dynamics.frequencies import modes, system
+from dem_cli.core.dynamics.history import damping_of_start
+from dem_cli.core.dynamics.restitution import housner, reference_block, rocked
+from dem_cli.core.engine.properties import joint_properties
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.model.scales import smallest_edge
 from dem_cli.errors import CaseError
-from dem_cli.model.scales import smallest_edge
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 KN = 2e9
 MODES = 6  # of a block on its joint: two of rocking with sliding along each axis, bounce, twist

@@ -16,15 +16,15 @@ from engine import MU, scene
 from scipy.optimize import brentq
 from studies.space.structures import box, tables
 
-from dem_cli.engine import measures
-from dem_cli.engine.budget import Budget
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.engine.simulation import Simulation
-from dem_cli.geometry.rotation import rotation_vectors
-from dem_cli.statics.compliance import compliance
-from dem_cli.statics.displacement_control import DisplacementControl
-from dem_cli.statics.equilibrium import relax, stand
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.geometry.rotation import rotation_vectors
+from dem_cli.core.statics.compliance import compliance
+from dem_cli.core.statics.displacement_control import DisplacementControl
+from dem_cli.core.statics.equilibrium import relax, stand
 
 A, T, H = 0.4, 0.15, 0.2  # length, thickness, height [m]
 AREA, WEIGHT = A * T, 2000.0 * 9.81 * A * T * H

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 import dem_cli
-from dem_cli.engine.static_settings import LoadSearchSettings
-from dem_cli.statics.failure_load import LoadSearch
+from dem_cli.core.engine.static_settings import LoadSearchSettings
+from dem_cli.core.statics.failure_load import LoadSearch
 
 WALL = """
 [materials.stone]

@@ -9,7 +9,7 @@ from casefiles import CASES, FILES, PLANAR, case_id, failure_load, read, scene
 from click.testing import CliRunner
 from engine import solve
 
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
 
 LARGE = {  # solved for docs/data/loads.json
     "top_load_b1", "top_load_b2", "top_load_b5", "top_load_b8", "top_load_b10", "top_load_b11",

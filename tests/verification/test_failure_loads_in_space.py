@@ -10,7 +10,7 @@ from studies.space.by_hand import BY_HAND
 from studies.space.structures import mirrored, quarter
 from studies.space.walls import WALLS, tapered_drums
 
-from dem_cli.engine.settings import DEFAULT
+from dem_cli.core.engine.settings import DEFAULT
 
 RESOLUTION = 5e-4
 

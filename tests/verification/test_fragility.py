@@ -9,14 +9,14 @@ import pytest
 from oracle.base_motion import pulse
 from oracle.housner import Block, overturns
 
-from dem_cli import api
+from dem_cli.analyses.ensembles import shaken_run
+from dem_cli.analyses.ensembles.batch import Batch
 from dem_cli.analyses.fragility import run
 from dem_cli.analyses.time_history import run as repeated
-from dem_cli.cli.words.fragility import fragility_rows
-from dem_cli.ensembles import shaken_run
-from dem_cli.ensembles.batch import Batch
+from dem_cli.app import api
+from dem_cli.app.cli.words.fragility import fragility_rows
+from dem_cli.core.records.ports import Observer
 from dem_cli.errors import SolverError
-from dem_cli.records.ports import Observer
 
 BLOCK = Path(__file__).resolve().parents[2] / "cases" / "verification" / "rocking_pulse_falls.toml"
 EXACT = Block(0.5, 2.0)

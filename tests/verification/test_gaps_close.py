@@ -12,11 +12,11 @@ from casefiles import CASES, read
 from click.testing import CliRunner
 from engine import Records, block, rectangle, scene, simulation, solve, tables, turned
 
-from dem_cli.assembly.assemble import assembly
-from dem_cli.assembly.validate import problems
-from dem_cli.cli.main import main
-from dem_cli.contact.gaps import gaps_of_start
-from dem_cli.engine.kinematics import why_moving
+from dem_cli.app.cli.main import main
+from dem_cli.core.contact.gaps import gaps_of_start
+from dem_cli.core.engine.kinematics import why_moving
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.assembly.validate import problems
 
 RESOLUTION = 0.005
 PAGE = json.loads((CASES.parent / "docs" / "data" / "imperfections.json").read_text(encoding="utf-8"))["rows"]

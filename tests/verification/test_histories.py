@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 from engine import scene, solve
 
-from dem_cli.cli.words.limit_loads import limit_rows
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.limit.analysis import limit_loads
+from dem_cli.app.cli.words.limit_loads import limit_rows
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.limit.analysis import limit_loads
 
 FROM_GRAVITY = {  # highest load held and lowest that failed; associated load
     "open06": (0.4657, 0.4680, 0.66891),

@@ -11,8 +11,8 @@ from studies import storage
 from studies.imperfections import low_blocks, tables
 from studies.imperfections.study import STUDY
 
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"

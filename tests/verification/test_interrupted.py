@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from casefiles import CASES
 
-from dem_cli import api
 from dem_cli.analyses.solve import solve
-from dem_cli.records.ports import Observer
+from dem_cli.app import api
+from dem_cli.core.records.ports import Observer
 
 
 class ImpatientObserver(Observer):

@@ -19,10 +19,10 @@ from engine import (
     turned,
 )  # fmt: skip
 
-from dem_cli.engine import measures
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.kernels import records as slot
-from dem_cli.statics.equilibrium import relax
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.statics.equilibrium import relax
 
 RELAXATION = DEFAULT.relaxation
 

@@ -1,4 +1,4 @@
-"""`dem_cli.limit` against the oracle on every pushover case, against the data book, and between its own bounds."""
+"""`dem_cli.core.limit` against the oracle on every pushover case, against the data book, and between its own bounds."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from casefiles import CASES, FILES, case_id, known_to_the_oracle, read, scene
 from engine.limits import solved
 from reference import result, value
 
-from dem_cli.limit.associated import FALLS, LOCKED, OK
+from dem_cli.core.limit.associated import FALLS, LOCKED, OK
 
 PUSHOVERS = [
     path for path in FILES

@@ -13,10 +13,10 @@ from oracle.hinges import follow
 from oracle.rolling_column import foot
 from reference import value as book
 
-from dem_cli.cli.verify import verified
-from dem_cli.verify.case_selection import SHELVES
-from dem_cli.verify.page import page
-from dem_cli.verify.records import all_well, digest, on_shelves
+from dem_cli.app.cli.verify import verified
+from dem_cli.app.verify.case_selection import SHELVES
+from dem_cli.app.verify.page import page
+from dem_cli.app.verify.records import all_well, digest, on_shelves
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 TABLE = json.loads((DOCS / "data" / "verification.json").read_text(encoding="utf-8"))

@@ -10,7 +10,7 @@ import pytest
 from engine import block, rectangle, tables
 from scipy.integrate import solve_ivp
 
-from dem_cli.output.ending import ending_words
+from dem_cli.results.output.ending import ending_words
 
 WIDTH, HEIGHT, TILT, G = 0.5, 2.0, 0.2, 9.81
 RADIUS = 0.5 * math.hypot(WIDTH, HEIGHT)

@@ -9,13 +9,13 @@ import pytest
 from engine import block, real_masses, rectangle, running_wall, simulation, solve, steps, tables
 
 from dem_cli.analyses.modes import closed_points
-from dem_cli.contact.detect import world_corners
-from dem_cli.dynamics.frequencies import modes, system
-from dem_cli.dynamics.time_step import time_step
-from dem_cli.engine.budget import Budget
+from dem_cli.core.contact.detect import world_corners
+from dem_cli.core.dynamics.frequencies import modes, system
+from dem_cli.core.dynamics.time_step import time_step
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.kernels.planar_forces import make_planar_forces
+from dem_cli.core.statics.equilibrium import stand
 from dem_cli.errors import CaseError
-from dem_cli.kernels.planar_forces import make_planar_forces
-from dem_cli.statics.equilibrium import stand
 
 GROUND = block("ground", rectangle(-3, -1, 3, 0), fixed=True)
 SLENDER = block("a", rectangle(0, 0, 0.5, 1.5))

@@ -10,12 +10,12 @@ import scipy.linalg
 from engine import block, real_masses, rectangle, simulation, solve, steps, tables
 
 from dem_cli.analyses.modes import closed_points, touching_points
-from dem_cli.contact.detect import world_corners
-from dem_cli.dynamics.frequencies import modes, system
-from dem_cli.dynamics.time_step import time_step
-from dem_cli.engine.budget import Budget
-from dem_cli.geometry.rotation import turned_further, turns_of
-from dem_cli.statics.equilibrium import stand
+from dem_cli.core.contact.detect import world_corners
+from dem_cli.core.dynamics.frequencies import modes, system
+from dem_cli.core.dynamics.time_step import time_step
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.geometry.rotation import turned_further, turns_of
+from dem_cli.core.statics.equilibrium import stand
 
 KN, KS = 3e6, 2e6  # so soft that weight counts: 0.2 to 5 % of the stiffness
 

@@ -12,14 +12,14 @@ from studies.mortar.specimen import blocks_of, strength, wallette
 from studies.mortar.wallettes import crack_by_crack
 from studies.space.structures import box, tables
 
-from dem_cli.contact.spatial_motion import place
-from dem_cli.engine.budget import Budget
-from dem_cli.engine.placement import moves
+from dem_cli.core.contact.spatial_motion import place
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.engine.placement import moves
+from dem_cli.core.geometry import polygon
+from dem_cli.core.kernels.records import FIXED_TO_B
+from dem_cli.core.kernels.spatial_forces import measure_spatial
+from dem_cli.core.statics.equilibrium import stand
 from dem_cli.errors import SolverError
-from dem_cli.geometry import polygon
-from dem_cli.kernels.records import FIXED_TO_B
-from dem_cli.kernels.spatial_forces import measure_spatial
-from dem_cli.statics.equilibrium import stand
 
 A, T, H = 0.4, 0.15, 0.2  # length, thickness, height [m]
 TENSION, COHESION = 0.322e6, 0.483e6

@@ -8,7 +8,7 @@ from engine import block, rectangle, solve, tables
 from engine.limits import solved
 from oracle.limit_lp import limit_load
 
-from dem_cli.limit.associated import FALLS, OK
+from dem_cli.core.limit.associated import FALLS, OK
 
 LEAN = 0.465  # of the centroid of the block beyond the middle of its foot [m]
 RESOLUTION = 1e-3

@@ -6,7 +6,7 @@ import numpy as np
 from casefiles import CASES
 from engine import block, rectangle, solve, tables
 
-from dem_cli.engine import simulation as engine
+from dem_cli.core.engine import simulation as engine
 
 GROUND = block("ground", rectangle(-2, -1, 6, 0), fixed=True)
 

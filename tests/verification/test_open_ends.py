@@ -11,8 +11,8 @@ import pytest
 from engine import block, rectangle, scene, solve, tables, turned
 from scipy.optimize import linprog
 
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.limit.analysis import limit_loads
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.limit.analysis import limit_loads
 
 PUSH = {"kind": "pushover", "direction": [-1.0, 0.0]}
 

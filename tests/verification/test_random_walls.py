@@ -7,9 +7,9 @@ import pytest
 from engine import block, rectangle, simulation, solve, tables
 from oracle.limit_lp import frictionless_heads, limit_load
 
-from dem_cli.engine.budget import Budget
-from dem_cli.statics.compliance import compliance
-from dem_cli.statics.equilibrium import relax, settle_or_fail
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.statics.compliance import compliance
+from dem_cli.core.statics.equilibrium import relax, settle_or_fail
 
 RESOLUTION = 0.002
 

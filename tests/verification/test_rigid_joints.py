@@ -14,12 +14,12 @@ from casefiles import CASES
 from engine import Records, block, rectangle, scene, solve, tables
 from oracle.rolling_column import fall, foot
 
-from dem_cli.engine import measures
-from dem_cli.engine.job import Job
-from dem_cli.engine.rigid_joints import motion_that_opens, rigid_points, take_back, unrelieved
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.engine.simulation import Simulation
-from dem_cli.statics.equilibrium import relax, settle_or_fail, stand
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.job import Job
+from dem_cli.core.engine.rigid_joints import motion_that_opens, rigid_points, take_back, unrelieved
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.statics.equilibrium import relax, settle_or_fail, stand
 
 RESOLUTION = 0.002
 WIDTH, HEIGHT, GAP = 0.5, 1.0, 3e-4

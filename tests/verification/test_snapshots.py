@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from engine import block, rectangle, tables
 
-from dem_cli.dynamics.snapshots import Snapshots
-from dem_cli.engine.settings import DEFAULT
+from dem_cli.core.dynamics.snapshots import Snapshots
+from dem_cli.core.engine.settings import DEFAULT
 
 GROUND = block("base", rectangle(-3, -1, 3, 0), fixed=True)
 PULSE = {"kind": "pulse", "shape": "sine", "amplitude": 3.6, "frequency": 1.0}

@@ -10,8 +10,8 @@ import pytest
 from engine import solve
 
 from dem_cli.analyses import bound_beside, pushover
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.statics import warm_start
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.statics import warm_start
 
 CASES = Path(__file__).resolve().parents[2] / "cases" / "verification"
 QUICK = "analysis.follow=0.0"

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from studies.space.structures import bonded_barrel, box, corner_wall, prism, solid, tables
 from synthetic.spatial_case import extruded_tables
 
-from dem_cli.kernels import records as slot
+from dem_cli.core.kernels import records as slot
 
 CLOSED = 1e-3  # energy error over the largest energy of a collapse or a settlement
 BASE = box("base", (-1.0, -1.0, -0.5), (1.0, 1.0, 0.0), fixed=True)

@@ -9,23 +9,23 @@ import pytest
 from engine import block, rectangle, scene, simulation, solve, tables
 from engine.limits import solved
 
-from dem_cli.dynamics.frequencies import modes, system
-from dem_cli.engine import measures
-from dem_cli.engine.automatic_stiffness import static_ratio
-from dem_cli.engine.budget import Budget
-from dem_cli.engine.dynamic import DynamicSimulation
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.engine.viscous import Damping
-from dem_cli.kernels import records as slot
-from dem_cli.kernels.records import Ground
-from dem_cli.limit.cone import friction_of
-from dem_cli.limit.matrices import structure_of
-from dem_cli.limit.path import trace
-from dem_cli.links.link import FORCE, PLASTIC
-from dem_cli.records.statuses import FALLS
-from dem_cli.statics.equilibrium import stand
-from dem_cli.statics.warm_start import WarmStart
+from dem_cli.core.dynamics.frequencies import modes, system
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.automatic_stiffness import static_ratio
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.engine.dynamic import DynamicSimulation
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.engine.viscous import Damping
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.kernels.records import Ground
+from dem_cli.core.limit.cone import friction_of
+from dem_cli.core.limit.matrices import structure_of
+from dem_cli.core.limit.path import trace
+from dem_cli.core.links.link import FORCE, PLASTIC
+from dem_cli.core.records.statuses import FALLS
+from dem_cli.core.statics.equilibrium import stand
+from dem_cli.core.statics.warm_start import WarmStart
 
 GRAVITY = {"kind": "gravity", "kinematics": "large"}
 CEILING = block("ceiling", rectangle(-2, 2, 2, 2.5), fixed=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import engine
 import numpy as np
 
-from dem_cli.geometry.rotation import matrices
+from dem_cli.core.geometry.rotation import matrices
 
 TIP = 0.005  # m, of cubes of 1 m: 2.5e-5 of a face
 

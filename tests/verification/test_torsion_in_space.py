@@ -11,11 +11,11 @@ from engine import scene, simulation, solve
 from scipy.optimize import brentq, minimize_scalar
 from studies.space.structures import box, prism, tables
 
-from dem_cli.contact.corner_forces import at_corners
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.kernels import records as slot
-from dem_cli.kernels.overlap import mean_distance
-from dem_cli.limit.analysis import LimitLoads, limit_loads
+from dem_cli.core.contact.corner_forces import at_corners
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.kernels.overlap import mean_distance
+from dem_cli.core.limit.analysis import LimitLoads, limit_loads
 
 MU, H = 0.6, 0.2
 RATIOS = [1.0, 2.0, 3.0, 5.0]

@@ -9,8 +9,8 @@ from oracle.limit_lp import limit_load
 from oracle.lune import FacetedDome, least_thickness
 from studies.vaults import hoops, thrust
 
-from dem_cli.geometry import polygon
-from dem_cli.structures.bridge import Bridge, build
+from dem_cli.core.geometry import polygon
+from dem_cli.masonry.structures.bridge import Bridge, build
 
 STONE = {"materials": {"stone": {"density": 2200.0}}}
 ARCH = {"kind": "arch", "voussoirs": 15, "inner_radius": 2.0, "ring": 0.4}

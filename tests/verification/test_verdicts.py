@@ -12,11 +12,11 @@ from casefiles import CASES
 from engine import Records, block, moved, rectangle, scene, simulation, solve, tables
 
 from dem_cli.analyses import solve as solver
-from dem_cli.engine import measures
-from dem_cli.engine.budget import Budget
-from dem_cli.kernels import records as slot
-from dem_cli.statics.compliance import compliance
-from dem_cli.statics.equilibrium import settle_or_fail, stand
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.statics.compliance import compliance
+from dem_cli.core.statics.equilibrium import settle_or_fail, stand
 
 VERIFICATION = CASES / "verification"
 QUIET = ("analysis.follow=0.0", "output.frames=0")

@@ -10,8 +10,8 @@ import pytest
 from engine import block, rectangle, tables
 from scipy.integrate import solve_ivp
 
-from dem_cli.dynamics.vibration_error import rates_at, rates_of, swing
-from dem_cli.motion.spectrum import response_spectrum
+from dem_cli.core.dynamics.vibration_error import rates_at, rates_of, swing
+from dem_cli.core.motion.spectrum import response_spectrum
 
 HERTZ, PULSE, AMPLITUDE, DURATION = 70.0, 49.0, 4.0, 0.3
 OMEGA, MASS_PER_AREA = 2.0 * math.pi * HERTZ, 1100.0  # of a block of 2200 kg/m3, half a metre high

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from reference import results, value
 
-from dem_cli.bench.table import percent
-from dem_cli.limit.rigid_wall import TopLoad, split_load
-from dem_cli.post import style
+from dem_cli.app.bench.table import percent
+from dem_cli.core.limit.rigid_wall import TopLoad, split_load
+from dem_cli.results.post import style
 from studies import storage
 from studies.appendix_b.softness import power
 from studies.appendix_b.sweep import outlines, swept

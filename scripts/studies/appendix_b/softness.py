@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from reference import results
 
-from dem_cli.bench.table import percent
+from dem_cli.app.bench.table import percent
 from studies.appendix_b.sweep import RIGID, changed, kn_of, planned
 from studies.template import table
 

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli import api
+from dem_cli.app import api
+from dem_cli.app.sweep.plan import SweepRun, plan_of
 from dem_cli.case.overrides import override_of
-from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
-from dem_cli.output.reader import Results, read
-from dem_cli.sweep.plan import SweepRun, plan_of
+from dem_cli.results.output.paraview.vertices import placed_vertices, rest_vertices
+from dem_cli.results.output.reader import Results, read
 from studies.places import CASES, ROOT
 from studies.polygons import rectangle
 from studies.solution import Solution, bracket_of, corners_of, solve

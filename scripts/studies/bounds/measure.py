@@ -6,12 +6,12 @@ import time
 from pathlib import Path
 from typing import Any
 
-from dem_cli import api
 from dem_cli.analyses.solve import solve
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.limit.analysis import LEAST, LOWER, limit_loads
-from dem_cli.records.ports import Observer
+from dem_cli.app import api
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.limit.analysis import LEAST, LOWER, limit_loads
+from dem_cli.core.records.ports import Observer
+from dem_cli.masonry.assembly.solver_request import solver_request
 from studies.places import ROOT
 
 KEPT = (

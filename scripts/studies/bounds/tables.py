@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from oracle.strong_joints import Points, stress_block_load, toppling_load
 
-from dem_cli.bench.table import percent
-from dem_cli.contact.layout import lobatto
+from dem_cli.app.bench.table import percent
+from dem_cli.core.contact.layout import lobatto
 from studies.template import table
 
 HEAD = ("case", "blocks", "joints", "reduced", "lower bound", "least load", "of", "DEM", "path", "associated",

@@ -12,9 +12,9 @@ from typing import Any
 
 import tomli_w
 
-from dem_cli.api import make_case_model
+from dem_cli.app.api import make_case_model
 from dem_cli.case.reader import CaseSource, validate
-from dem_cli.structures.registry import generated_blocks
+from dem_cli.masonry.structures.registry import generated_blocks
 from studies.buildings import plans
 
 PUSH = {"direction": [0.0, -1.0, 0.0], "resolution": 0.01}

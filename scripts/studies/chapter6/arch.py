@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from reference import results
 
-from dem_cli.bench.table import percent
-from dem_cli.post import style
+from dem_cli.app.bench.table import percent
+from dem_cli.results.post import style
 from studies.chapter6.shaken_case import run
 from studies.storage import rounded
 from studies.template import commands, table

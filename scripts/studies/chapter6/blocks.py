@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from reference import results
 
-from dem_cli.bench.diagrams import COLOURS, MARKERS
-from dem_cli.bench.table import percent
-from dem_cli.post import style
+from dem_cli.app.bench.diagrams import COLOURS, MARKERS
+from dem_cli.app.bench.table import percent
+from dem_cli.results.post import style
 from studies.chapter6.shaken_case import extremes, run
 from studies.polygons import rectangle
 from studies.storage import rounded

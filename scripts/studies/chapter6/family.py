@@ -9,12 +9,12 @@ from typing import Any
 from reference import results
 from scipy.optimize import brentq
 
-from dem_cli import api
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.bench.table import percent
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.limit.analysis import limit_loads
-from dem_cli.post import style
+from dem_cli.app import api
+from dem_cli.app.bench.table import percent
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.limit.analysis import limit_loads
+from dem_cli.masonry.assembly.solver_request import solver_request
+from dem_cli.results.post import style
 from studies.chapter6.arch import FALLS, HEADS, TRIED, as_thesis, four, load_of, perturbed, sizes, sliding
 from studies.chapter6.shaken_case import draw_blocks, run
 from studies.places import CASES

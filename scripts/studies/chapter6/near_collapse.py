@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli import api
-from dem_cli.assembly.ground_motions import motions_of
-from dem_cli.post import style
+from dem_cli.app import api
+from dem_cli.masonry.assembly.ground_motions import motions_of
+from dem_cli.results.post import style
 from studies.chapter6.arch import UNIT
 from studies.chapter6.shaken_case import ShakenCase, draw_blocks, run
 from studies.places import CASES

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem_cli import api
 from dem_cli.analyses.solve import solve as solve_model
+from dem_cli.app import api
+from dem_cli.core.records.frames import Frame
 from dem_cli.errors import SolverError
-from dem_cli.output.paraview import vertices
-from dem_cli.post import style
-from dem_cli.records.frames import Frame
+from dem_cli.results.output.paraview import vertices
+from dem_cli.results.post import style
 from studies.observer import RunKeeper
 from studies.places import CASES
 from studies.solution import command_of, from_file

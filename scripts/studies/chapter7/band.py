@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from reference import results
 
-from dem_cli.contact.drawn_joints import DrawnJoints
-from dem_cli.model.model import Model
-from dem_cli.post import style
-from dem_cli.records.frames import Frame
+from dem_cli.core.contact.drawn_joints import DrawnJoints
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import Frame
+from dem_cli.results.post import style
 from studies.chapter7.walls import FACE, JOINT
 from studies.places import CASES
 from studies.solution import bracket_of, command_of, corners_of, from_file, solve

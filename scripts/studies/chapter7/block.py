@@ -9,8 +9,8 @@ from typing import Any
 from oracle import rolling_polygons as statics
 from reference import results
 
-from dem_cli.bench.table import percent
-from dem_cli.post import style
+from dem_cli.app.bench.table import percent
+from dem_cli.results.post import style
 from studies.bisection import bisect
 from studies.chapter7.load_path import run
 from studies.template import commands, minus, table

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.bench.table import percent
-from dem_cli.post import style
+from dem_cli.app.bench.table import percent
+from dem_cli.results.post import style
 from studies.chapter7.load_path import run
 from studies.template import commands, table
 

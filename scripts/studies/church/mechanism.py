@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.model.model import Model
-from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
-from dem_cli.records.frames import Frame
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import Frame
+from dem_cli.results.output.paraview.vertices import placed_vertices, rest_vertices
 from studies.church.seven_bodies import BODIES, body_of
 from studies.solution import bracket_of, from_tables, solve
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli import api
-from dem_cli.assembly.solver_request import solver_request
+from dem_cli.app import api
 from dem_cli.case.reader import LoadedCase
-from dem_cli.contact.compatibility import free_columns, relative_motion, strain_motion
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.engine.properties import joint_properties
-from dem_cli.model.model import Model
-from dem_cli.model.scales import smallest_edge
+from dem_cli.core.contact.compatibility import free_columns, relative_motion, strain_motion
+from dem_cli.core.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.core.engine.properties import joint_properties
+from dem_cli.core.model.model import Model
+from dem_cli.core.model.scales import smallest_edge
+from dem_cli.masonry.assembly.solver_request import solver_request
 from studies.deformable.finite_elements import ElasticWall
 from studies.deformable.finite_elements import displacement as by_elements
 from studies.deformable.walls import WALL

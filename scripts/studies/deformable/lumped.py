@@ -5,12 +5,12 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from dem_cli import api
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.bench.table import percent
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.simulation import Simulation
-from dem_cli.kernels.records import HOLD_LOAD
+from dem_cli.app import api
+from dem_cli.app.bench.table import percent
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.kernels.records import HOLD_LOAD
+from dem_cli.masonry.assembly.solver_request import solver_request
 from studies.deformable.elastic_wall import displacement, finite_elements, stones
 from studies.deformable.walls import AT, WALL, curve
 from studies.solution import from_file

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import dem_cli
-from dem_cli import api
-from dem_cli.bench.table import percent
-from dem_cli.model.scales import stiffness_scale
+from dem_cli.app import api
+from dem_cli.app.bench.table import percent
+from dem_cli.core.model.scales import stiffness_scale
 from studies.deformable.walls import AT, curve
 from studies.places import ROOT
 from studies.solution import bracket_of, command_of, from_file, solve

@@ -11,11 +11,11 @@ from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
-from dem_cli import api
-from dem_cli.bench.cases import solve
+from dem_cli.app import api
+from dem_cli.app.bench.cases import solve
 from dem_cli.case.imperfection import Imperfection
 from dem_cli.case.schema import Case
-from dem_cli.model.model import Model
+from dem_cli.core.model.model import Model
 from studies.places import CASES
 
 CASE = CASES / "verification" / "wall_21.toml"

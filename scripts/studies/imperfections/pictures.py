@@ -10,10 +10,10 @@ from matplotlib import colormaps
 from matplotlib.colors import Normalize
 from matplotlib.patches import Rectangle
 
-from dem_cli.api import make_case_model
-from dem_cli.assembly.assemble import assembly
+from dem_cli.app.api import make_case_model
 from dem_cli.case.reader import CaseSource, validate
-from dem_cli.post import style
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.results.post import style
 
 LENGTH, HEIGHT, BLOCKS = 40.0, 17.5, 3  # [mm], [mm], in a full course
 LOW, HIGH = 0.4, 0.6  # ends of the colour scale

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from dem_cli.sweep.pool import GRACE
+from dem_cli.app.sweep.pool import GRACE
 from studies.interrupts.commands import COMMANDS, InterruptedCommand
 from studies.interrupts.trial import InterruptTrial, gone_on, interrupted, started
 from studies.study import StudyRunner

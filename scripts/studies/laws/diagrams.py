@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from dem_cli.laws.registry import LAWS
-from dem_cli.laws.softening import FRICTION_SOFTENING
+from dem_cli.core.laws.registry import LAWS
+from dem_cli.core.laws.softening import FRICTION_SOFTENING
 from studies.laws.driven_point import Graph, LawPage, Panel, pulled, slid, three_paths, through
 from studies.laws.peperino import (
     KG_PER_CM2,

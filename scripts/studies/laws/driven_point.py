@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem_cli.laws.displacement_path import PathResponse, drive
-from dem_cli.laws.law import Law
-from dem_cli.laws.registry import LAWS
-from dem_cli.tables.declared import table_of
+from dem_cli.case.tables.declared import table_of
+from dem_cli.core.laws.displacement_path import PathResponse, drive
+from dem_cli.core.laws.law import Law
+from dem_cli.core.laws.registry import LAWS
 
 
 class Graph(NamedTuple):

@@ -9,8 +9,8 @@ import tomli_w
 
 from dem_cli.case.base import CaseModel
 from dem_cli.case.keys import CaseKey, CaseTable
-from dem_cli.laws.stiffness import StiffJoint
-from dem_cli.tables.declared import table_of
+from dem_cli.case.tables.declared import table_of
+from dem_cli.core.laws.stiffness import StiffJoint
 from studies.laws.diagrams import PAGES
 from studies.laws.driven_point import LawPage
 from studies.template import filled

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from dem_cli.laws.registry import LAWS
+from dem_cli.core.laws.registry import LAWS
 from studies.template import minus
 from studies.template import table as markdown
 

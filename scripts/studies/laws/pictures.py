@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.post import style
+from dem_cli.results.post import style
 from studies.laws.driven_point import Graph, LawPage
 
 COLOURS = {"blue": style.THRUST, "red": style.STAGE_COLOURS["collapse"], "green": style.LIMIT, "ink": style.INK,

@@ -10,20 +10,20 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli import api
 from dem_cli.analyses.solve import solve
-from dem_cli.assembly.solver_request import solver_request
+from dem_cli.app import api
 from dem_cli.case.schema import Case
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.laws.envelope import frictional
-from dem_cli.limit import path as paths
-from dem_cli.limit.analysis import start_structure
-from dem_cli.limit.associated import OK, limit_load
-from dem_cli.limit.cone import friction_of
-from dem_cli.limit.matrices import Structure
-from dem_cli.limit.settings import DEFAULT_LIMIT, LimitSettings
-from dem_cli.model.model import Model
-from dem_cli.records.ports import Observer
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.laws.envelope import frictional
+from dem_cli.core.limit import path as paths
+from dem_cli.core.limit.analysis import start_structure
+from dem_cli.core.limit.associated import OK, limit_load
+from dem_cli.core.limit.cone import friction_of
+from dem_cli.core.limit.matrices import Structure
+from dem_cli.core.limit.settings import DEFAULT_LIMIT, LimitSettings
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.ports import Observer
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 # The fine path. Where joints slide in another order, another load is reached: increments must be small enough for it to
 # settle, and end only where the load grows next to nothing.

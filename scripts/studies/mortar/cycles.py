@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from dem_cli import api
 from dem_cli.analyses.solve import solve
-from dem_cli.post import style
+from dem_cli.app import api
+from dem_cli.results.post import style
 from studies.observer import RunKeeper
 from studies.places import CASES
 from studies.template import minus, table

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.contact.area_rules import inner_points
+from dem_cli.core.contact.area_rules import inner_points
 from studies.template import table
 
 SQUARE = np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]])

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli import api
 from dem_cli.analyses.solve import solve
-from dem_cli.contact.drawn_joints import DrawnJoints
-from dem_cli.model.model import Model
-from dem_cli.post import style
-from dem_cli.records.frames import Frame
+from dem_cli.app import api
+from dem_cli.core.contact.drawn_joints import DrawnJoints
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import Frame
+from dem_cli.results.post import style
 from studies.observer import RunKeeper
 from studies.places import CASES
 from studies.template import minus, table

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli import api
 from dem_cli.analyses.solve import solve
-from dem_cli.output.paraview.vertices import placed_vertices
-from dem_cli.post import style
+from dem_cli.app import api
+from dem_cli.results.output.paraview.vertices import placed_vertices
+from dem_cli.results.post import style
 from studies.observer import RunKeeper
 from studies.places import CASES
 from studies.template import minus, table

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.geometry import polygon
+from dem_cli.core.geometry import polygon
 
 WIDTH, LENGTH, THICKNESS = 0.8, 1.6, 0.15  # m; 0.79 x 1.6 m in paper 002: whole blocks with half a joint around
 BLOCK = (0.4, 0.2)  # m, with a joint of 10 mm

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from oracle import brittle_plate, toothed_crack
 
-from dem_cli.post import style
+from dem_cli.results.post import style
 from studies.mortar import specimen
 from studies.mortar.specimen import LENGTH, TENSION, WIDTH, blocks_of, strength, wallette
 from studies.solution import from_tables, solve

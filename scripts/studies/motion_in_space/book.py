@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem_cli import api
 from dem_cli.analyses.solve import solve
+from dem_cli.app import api
+from dem_cli.app.pipeline.execution import Destination, execute
 from dem_cli.case.reader import LoadedCase
-from dem_cli.model.model import Model
-from dem_cli.pipeline.execution import Destination, execute
-from dem_cli.records.frames import Frame
-from dem_cli.records.history_rows import Energy, HistoryRow, Samples
-from dem_cli.records.ports import Observer
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import Frame
+from dem_cli.core.records.history_rows import Energy, HistoryRow, Samples
+from dem_cli.core.records.ports import Observer
 from studies.observer import RunKeeper
 from studies.solution import from_tables
 

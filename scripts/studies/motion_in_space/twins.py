@@ -7,12 +7,12 @@ from typing import Any
 
 import tomli
 
-from dem_cli import api
+from dem_cli.app import api
+from dem_cli.app.pipeline.monitor_names import monitor_names
 from dem_cli.case.reader import LoadedCase
 from dem_cli.case.schema import Case
-from dem_cli.model.model import Model
-from dem_cli.output.scalars import scalars
-from dem_cli.pipeline.monitor_names import monitor_names
+from dem_cli.core.model.model import Model
+from dem_cli.results.output.scalars import scalars
 from studies.motion_in_space.book import solved
 from studies.solution import from_file, from_tables
 from studies.space.twins import twin

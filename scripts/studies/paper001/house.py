@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from dem_cli import api
 from dem_cli.analyses.solve import solve
+from dem_cli.app import api
 from dem_cli.case.overrides import Override, override_of
 from studies.observer import RunKeeper
 from studies.places import CASES

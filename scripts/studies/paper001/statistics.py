@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli import api
 from dem_cli.analyses.solve import solve
+from dem_cli.app import api
+from dem_cli.app.sweep.plan import SweepRun, plan_of
 from dem_cli.errors import SolverError
-from dem_cli.post import style
-from dem_cli.sweep.plan import SweepRun, plan_of
+from dem_cli.results.post import style
 from studies.observer import RunKeeper
 from studies.places import CASES
 from studies.solution import bracket_of

@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.api import build_model
-from dem_cli.assembly.ground_motions import suites_of
-from dem_cli.ensembles.shaken_run import RestedStructure
-from dem_cli.ensembles.variants import Variant
-from dem_cli.motion.motion import Motion
-from dem_cli.motion.pulses import impulse
-from dem_cli.records.ports import Observer
+from dem_cli.analyses.ensembles.shaken_run import RestedStructure
+from dem_cli.analyses.ensembles.variants import Variant
+from dem_cli.app.api import build_model
+from dem_cli.core.motion.motion import Motion
+from dem_cli.core.motion.pulses import impulse
+from dem_cli.core.records.ports import Observer
+from dem_cli.masonry.assembly.ground_motions import suites_of
 from studies.bisection import bisect_ratio
 from studies.places import CASES
 from studies.rocking.single_block import solve
@@ -78,7 +78,7 @@ class Shaker:
         return bool(self.run([Motion(impulse(amplitude * G, tp, REBOUND))]).collapsed)
 
     def run(self, motions: Sequence[Any]) -> Any:
-        """What became of it under the sum of motions (ensembles/shaken_run.py: Run)."""
+        """What became of it under the sum of motions (analyses/ensembles/shaken_run.py: Run)."""
         run = self.rested.shaken(motions)
         assert run.ending, run.how
         self.runs, self.seconds = self.runs + 1, self.seconds + run.seconds

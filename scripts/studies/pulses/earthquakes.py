@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from dem_cli.motion.motion import Motion
-from dem_cli.motion.synthetic import suite
-from dem_cli.tables.base_motion import ArtificialTable
+from dem_cli.case.tables.base_motion import ArtificialTable
+from dem_cli.core.motion.motion import Motion
+from dem_cli.core.motion.synthetic import suite
 from studies.pulses import voussoirs
 from studies.pulses.domain import Shaker, changed, table_of
 

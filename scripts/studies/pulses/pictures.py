@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from reference import result
 
-from dem_cli.post import style
+from dem_cli.results.post import style
 from studies.pulses import column, domain
 
 Row = Mapping[str, Any]

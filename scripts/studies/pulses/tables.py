@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from reference import result, value
 
-from dem_cli.bench.table import percent
+from dem_cli.app.bench.table import percent
 from studies.pulses import column
 from studies.pulses.pictures import BOOK, NAMES, VAULT_BOOK
 from studies.template import bracket

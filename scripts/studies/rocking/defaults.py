@@ -12,7 +12,7 @@ from oracle import rocking_frame
 from oracle.base_motion import REST, Sine
 from oracle.housner import Block, Rocking, rock
 
-from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.core.engine.settings import DEFAULT, Settings
 from studies.polygons import rectangle
 from studies.rocking.single_block import Response, fallen_angle, one_block, solve
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from oracle.housner import Block, rock
 
-from dem_cli.post import style
+from dem_cli.results.post import style
 from studies.rocking import free_rocking, overturning
 from studies.rocking.ensembles import CHANGE, FALLS
 

@@ -12,7 +12,7 @@ from oracle.base_motion import Record
 from oracle.housner import Block
 
 from dem_cli.case.reader import LoadedCase
-from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.core.engine.settings import DEFAULT, Settings
 from studies import solution
 from studies.polygons import rectangle
 from studies.solution import from_file, from_tables

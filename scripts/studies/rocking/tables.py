@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from oracle.housner import Block
 
-from dem_cli.bench.table import percent
+from dem_cli.app.bench.table import percent
 from studies.rocking import defaults, ensembles, free_rocking, overturning
 from studies.template import minus
 from studies.template import table as markdown

@@ -8,8 +8,8 @@ from typing import Any
 
 from reference import book
 
-from dem_cli.output.reference import error
-from dem_cli.verify.verdict_words import off, share, shown
+from dem_cli.app.verify.verdict_words import off, share, shown
+from dem_cli.results.output.reference import error
 from studies.seeds.rows import INPUT, MET, MISSED, NOT, UNKNOWN, SeedRow, rows
 from studies.template import filled, minus, table
 

@@ -12,7 +12,7 @@ from typing import Any
 from reference import results
 
 from dem_cli.case.tolerance_rules import allowance
-from dem_cli.output.reference import passes
+from dem_cli.results.output.reference import passes
 from studies import storage
 from studies.seeds.computed import COMPUTED
 

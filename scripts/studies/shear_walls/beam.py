@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from dem_cli.post import style
+from dem_cli.results.post import style
 from studies.shear_walls.walls import (
     FORCES,
     KN,

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.post import style
+from dem_cli.results.post import style
 from studies.shear_walls.walls import FORCES, KN, MM, draw_curve, draw_tests, legend_below, peak, wall
 from studies.template import minus, table
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli import api
 from dem_cli.analyses.solve import solve
-from dem_cli.output.reference import verdicts
-from dem_cli.post import style
+from dem_cli.app import api
+from dem_cli.results.output.reference import verdicts
+from dem_cli.results.post import style
 from studies.observer import RunKeeper
 from studies.places import CASES
 

@@ -8,7 +8,7 @@ from itertools import combinations
 
 from pydantic import BaseModel, ValidationError
 
-from dem_cli.api import make_case_model
+from dem_cli.app.api import make_case_model
 from dem_cli.case.explain import CaseEntry
 from dem_cli.case.keys import CaseKey, CaseTable, only_in, tables
 from studies.places import DOCS

@@ -7,7 +7,7 @@ import re
 
 import click
 
-from dem_cli.cli.main import COMMANDS, main
+from dem_cli.app.cli.main import COMMANDS, main
 from studies.template import table as markdown
 
 INTRODUCTION = """# Commands

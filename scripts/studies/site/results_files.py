@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from dem_cli.output.layout import GROUPS, WORDS, Described
-from dem_cli.output.paraview.described_fields import STEP_FIELDS, VTK_FILES
+from dem_cli.results.output.layout import GROUPS, WORDS, Described
+from dem_cli.results.output.paraview.described_fields import STEP_FIELDS, VTK_FILES
 from studies.template import table as markdown
 
 INTRODUCTION = """# Results: every dataset of the files

@@ -6,16 +6,16 @@ import time
 from pathlib import Path
 from typing import Any
 
-from dem_cli import api
 from dem_cli.analyses.solve import solve
-from dem_cli.assembly.solver_request import solver_request
+from dem_cli.app import api
 from dem_cli.case.schema import Case
-from dem_cli.engine.kinematics import why_moving
-from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.kinematics import why_moving
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.limit.analysis import limit_loads
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.ports import Observer
 from dem_cli.errors import CaseError, UsageError
-from dem_cli.limit.analysis import limit_loads
-from dem_cli.model.model import Model
-from dem_cli.records.ports import Observer
+from dem_cli.masonry.assembly.solver_request import solver_request
 from studies.solution import from_file, from_tables
 from studies.space.by_hand import ByHand
 from studies.space.twins import twin

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from dem_cli import api
+from dem_cli.app import api
 from dem_cli.case.overrides import Override, override_of
 from studies.places import CASES
 from studies.space.measure import dem, limits

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.geometry.polyhedron import prisms
-from dem_cli.model.bodies import bodies_of
-from dem_cli.model.model import Model
+from dem_cli.core.geometry.polyhedron import prisms
+from dem_cli.core.model.bodies import bodies_of
+from dem_cli.core.model.model import Model
 
 
 def twin(model: Model) -> Model:

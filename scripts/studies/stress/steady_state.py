@@ -7,16 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.engine.fictitious_masses import fictitious_masses
-from dem_cli.engine.kinematics import live_scale
-from dem_cli.engine.loops import compiled_advance
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.settings import DEFAULT, Settings
-from dem_cli.engine.simulation import Simulation
+from dem_cli.core.engine.fictitious_masses import fictitious_masses
+from dem_cli.core.engine.kinematics import live_scale
+from dem_cli.core.engine.loops import compiled_advance
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.statics.equilibrium import relax
 from dem_cli.errors import SolverError
-from dem_cli.kernels import records as slot
-from dem_cli.statics.equilibrium import relax
+from dem_cli.masonry.assembly.solver_request import solver_request
 from studies.polygons import rectangle
 from studies.stress.structures import StressScene, block, drawn, ground, named
 from studies.stress.verdicts import HELD, REFUSED, WRONG, StressRecord, figure, load_record

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.api import build_model
-from dem_cli.assembly.assemble import case_blocks
-from dem_cli.geometry import polygon
+from dem_cli.app.api import build_model
+from dem_cli.core.geometry import polygon
+from dem_cli.masonry.assembly.assemble import case_blocks
 from studies.places import CASES
 from studies.polygons import rectangle
 from studies.solution import from_tables

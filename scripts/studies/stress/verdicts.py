@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from dem_cli.analyses.solve import solve
-from dem_cli.assembly.validate import warnings as oddities
-from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.core.engine.settings import DEFAULT, Settings
 from dem_cli.errors import CaseError, DemError
+from dem_cli.masonry.assembly.validate import warnings as oddities
 from studies.observer import RunKeeper
 from studies.stress.structures import StressScene
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.post import style
+from dem_cli.results.post import style
 from studies.solution import bracket_of
 from studies.template import table
 from studies.vaults.runs import solved

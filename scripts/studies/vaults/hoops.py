@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.post import style
+from dem_cli.results.post import style
 from studies.template import table
 from studies.vaults.runs import BONDED, DENSITY, GRAVITY, STIFF, courses_of, dome, last_contacts, solved
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from dem_cli.model.model import Model
-from dem_cli.records.frames import ContactRecord
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import ContactRecord
 from studies.solution import Solution, from_tables, solve
 
 DENSITY, GRAVITY = 2000.0, 9.81

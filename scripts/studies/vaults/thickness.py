@@ -7,7 +7,7 @@ from typing import Any
 
 from oracle.lune import FacetedDome, least_thickness
 
-from dem_cli.post import style
+from dem_cli.results.post import style
 from studies.template import table
 from studies.vaults.runs import dome, smoothest, thinnest
 

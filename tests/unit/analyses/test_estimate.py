@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from dem_cli import api
 from dem_cli.analyses import estimate_cost
 from dem_cli.analyses.estimate import describe
-from dem_cli.engine import loops
+from dem_cli.app import api
+from dem_cli.core.engine import loops
 from dem_cli.errors import CaseError
 
 CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dem_cli.analyses.estimate_shaking import ground_words
-from dem_cli.motion.motion import Motion
-from dem_cli.motion.pulses import SineWave
+from dem_cli.core.motion.motion import Motion
+from dem_cli.core.motion.pulses import SineWave
 
 
 def motion(peak, *direction):

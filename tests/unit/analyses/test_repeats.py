@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from dem_cli.analyses.ensembles.shaken_run import ShakenRunResult
 from dem_cli.analyses.time_history import otherwise, spread
-from dem_cli.ensembles.shaken_run import ShakenRunResult
-from dem_cli.records.statuses import MOVES
+from dem_cli.core.records.statuses import MOVES
 
 
 def run(collapsed: bool, *peaks: float) -> ShakenRunResult:

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.sparse import csc_array, diags_array, eye_array, kron
 
-from dem_cli.arithmetic import functions
-from dem_cli.arithmetic.products import norm, product
-from dem_cli.arithmetic.small_matrices import (
+from dem_cli.core.arithmetic import functions
+from dem_cli.core.arithmetic.products import norm, product
+from dem_cli.core.arithmetic.small_matrices import (
     determinants,
     diagonalised,
     inverse,
@@ -16,7 +16,7 @@ from dem_cli.arithmetic.small_matrices import (
     solved,
     solved_tridiagonal,
 )  # fmt: skip
-from dem_cli.arithmetic.sparse_systems import solved_symmetric
+from dem_cli.core.arithmetic.sparse_systems import solved_symmetric
 
 RNG = np.random.default_rng(7)
 SHAPES = [((4,), (4,)), ((3, 4), (4,)), ((4,), (4, 2)), ((3, 4), (4, 2)), ((5, 3, 3), (5, 3, 1)), ((4,), (5, 4, 2))]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from dem_cli.api import make_case_model
+from dem_cli.app.api import make_case_model
 from dem_cli.case.reader import CaseSource, validate
 
 

@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from synthetic.buoyancy import floating
 
-from dem_cli.assembly.assemble import assembly
+from dem_cli.core.geometry.rotation import moments
 from dem_cli.errors import CaseError
-from dem_cli.geometry.rotation import moments
+from dem_cli.masonry.assembly.assemble import assembly
 
 GRAVITY, WATER = 9.81, 1000.0
 FLOOR = {"id": "floor", "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]], "fixed": True}

@@ -8,9 +8,9 @@ import time
 import numpy as np
 import pytest
 
-from dem_cli.assembly.assemble import assemble, assembly, joint_table
-from dem_cli.assembly.validate import problems, warnings
 from dem_cli.errors import CaseError
+from dem_cli.masonry.assembly.assemble import assemble, assembly, joint_table
+from dem_cli.masonry.assembly.validate import problems, warnings
 
 SQUARE = {"id": "a", "vertices": [[1, 1], [0, 0], [1, 0], [0, 1]], "thickness": 2.0}
 FLOOR = {"id": "floor", "vertices": [[-1, -1], [9, -1], [9, 0], [-1, 0]], "fixed": True}

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from engine import block, rectangle, scene, simulation
 
-from dem_cli.assembly import sanity
-from dem_cli.assembly.assemble import assembly
-from dem_cli.assembly.cracks import cracked
 from dem_cli.case.base import Crack
-from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.geometry import polyhedron
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.limit.analysis import limit_loads
+from dem_cli.core.model.blocks import Block
+from dem_cli.core.model.places import undeformed
 from dem_cli.errors import CaseError
-from dem_cli.geometry import polyhedron
-from dem_cli.kernels import records as slot
-from dem_cli.limit.analysis import limit_loads
-from dem_cli.model.blocks import Block
-from dem_cli.model.places import undeformed
+from dem_cli.masonry.assembly import sanity
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.assembly.cracks import cracked
 
 GLUE = {"law": "mohr-coulomb", "friction": 1.0, "cohesion": 1e9, "tension": 5e8}
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from synthetic.spatial_case import spatial_case
 
-from dem_cli.assembly import sanity, validate
-from dem_cli.assembly.assemble import assembly
-from dem_cli.assembly.place_notes import common_place
+from dem_cli.masonry.assembly import sanity, validate
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.assembly.place_notes import common_place
 
 WALL = {"kind": "wall", "block": [0.5, 0.25], "courses": 4, "blocks_per_course": 3, "thickness": 0.4}
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from engine import block, rectangle, scene, tables
 
-from dem_cli.assembly import validate
-from dem_cli.assembly.assemble import assembly
 from dem_cli.case.plausibility import doubts
+from dem_cli.core.links.link import FIXED_POINT
 from dem_cli.errors import CaseError
-from dem_cli.links.link import FIXED_POINT
+from dem_cli.masonry.assembly import validate
+from dem_cli.masonry.assembly.assemble import assembly
 
 FLOOR = block("floor", rectangle(-3, -1, 3, 0), fixed=True)
 TWO = (block("a", rectangle(0, 0, 1, 1)), block("b", rectangle(0, 1, 1, 2)))

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import shapely
 
-from dem_cli.api import make_case_model
-from dem_cli.assembly.applied_loads import applied_loads
-from dem_cli.assembly.assemble import assembly
-from dem_cli.assembly.exposure import Surfaces
+from dem_cli.app.api import make_case_model
 from dem_cli.case.reader import CaseSource, validate
-from dem_cli.geometry.rotation import moments
+from dem_cli.core.geometry.rotation import moments
+from dem_cli.masonry.assembly.applied_loads import applied_loads
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.assembly.exposure import Surfaces
 
 TEMPLATES = Path(__file__).resolve().parents[3] / "dem_cli" / "cli" / "templates"
 KINDS = ("arch", "bridge", "herringbone-wall", "temple-front", "vault", "voronoi-wall", "wall-section")  # 2D and 3D

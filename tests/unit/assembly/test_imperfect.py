@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem_cli.assembly.assemble import assembly
-from dem_cli.assembly.validate import problems
 from dem_cli.case.imperfection import NormalDistribution, drawn
 from dem_cli.case.reader import parse_toml
 from dem_cli.case.writer import case_text
+from dem_cli.core.geometry import polygon
 from dem_cli.errors import CaseError
-from dem_cli.geometry import polygon
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.assembly.validate import problems
 
 FLOOR = {"id": "floor", "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]], "fixed": True}
 
@@ -209,13 +209,13 @@ def bottoms_by_hand(heights, lengths, course_lefts):
 @settings(deadline=None, max_examples=30)
 @given(
     st.integers(0, 10_000), st.sampled_from(["running", "stack"]), st.integers(1, 5), st.integers(1, 4),
-    # Gaps below a millionth of a block are none to the mason (assembly/laying.py): errors are none, or can be seen.
+    # Gaps below a millionth of a block are none (masonry/assembly/laying.py): errors are none, or can be seen.
     st.just(0.0) | st.floats(1e-5, 0.003), st.floats(-1.2, 1.2), st.booleans(),
 )  # fmt: skip
 def test_every_block_rests_on_the_highest_below(seed, bond, courses, count, error, turn, toothed):
     from pathlib import Path
 
-    from dem_cli.api import make_case_model
+    from dem_cli.app.api import make_case_model
     from dem_cli.case.reader import CaseSource, validate
 
     structure = {"kind": "wall", "block": [0.04, 0.0175], "courses": courses, "blocks_per_course": count, "bond": bond,

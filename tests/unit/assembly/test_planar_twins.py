@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from synthetic.spatial_case import extruded_tables
 
-from dem_cli.api import build_model, make_case_model
+from dem_cli.app.api import build_model, make_case_model
 from dem_cli.case.reader import CaseSource, LoadedCase, validate
 
 CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"

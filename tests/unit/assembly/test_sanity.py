@@ -9,12 +9,12 @@ import pytest
 from casefiles import FILES
 from click.testing import CliRunner
 
-from dem_cli.api import build_model, load_case
-from dem_cli.cli.main import main
+from dem_cli.app.api import build_model, load_case
+from dem_cli.app.cli.main import main
 from dem_cli.errors import CaseError
 
 ROOT = Path(__file__).resolve().parents[3]
-TEMPLATES = sorted((ROOT / "dem_cli/cli/templates").glob("*.toml"))
+TEMPLATES = sorted((ROOT / "dem_cli/app/cli/templates").glob("*.toml"))
 WALL = """
 [materials.stone]
 density = 2000.0

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from dem_cli.analyses.settlement import SupportMovement
-from dem_cli.assembly.assemble import assembly
-from dem_cli.assembly.ground_motions import motions_of
-from dem_cli.assembly.solver_request import solver_request
 from dem_cli.case.selection import Selection
-from dem_cli.dynamics.ground import GroundMotion
-from dem_cli.engine.monitors import Monitors
+from dem_cli.core.dynamics.ground import GroundMotion
+from dem_cli.core.engine.monitors import Monitors
 from dem_cli.errors import CaseError
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.assembly.ground_motions import motions_of
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 LEFT = {"kind": "wall", "id": "left", "block": [1.0, 0.5], "courses": 4, "blocks_per_course": 2}
 RIGHT = {"kind": "wall", "id": "right", "block": [1.0, 0.5], "courses": 2, "blocks_per_course": 2, "origin": [5.0, 0.0]}

@@ -9,7 +9,13 @@ import numpy as np
 import pytest
 from engine import block, rectangle, scene, tables
 
-from dem_cli.records.requests import DEFAULT_FRACTION, DampingRequest, MaxwellRequest, MonitorRequest, RayleighRequest
+from dem_cli.core.records.requests import (
+    DEFAULT_FRACTION,
+    DampingRequest,
+    MaxwellRequest,
+    MonitorRequest,
+    RayleighRequest,
+)
 
 BASE = block("base", rectangle(0, -1, 2, 0), fixed=True)
 BLOCK = block("b", rectangle(0.2, 0, 1.2, 1))

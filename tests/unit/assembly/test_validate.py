@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.assembly.assemble import assemble, assembly
-from dem_cli.assembly.validate import problems, shape_problems, warnings
-from dem_cli.model.blocks import Block
+from dem_cli.core.model.blocks import Block
+from dem_cli.masonry.assembly.assemble import assemble, assembly
+from dem_cli.masonry.assembly.validate import problems, shape_problems, warnings
 
 FLOOR = {"id": "floor", "vertices": [[0, -1], [9, -1], [9, 0], [0, 0]], "fixed": True}
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from oracle.limit_lp import frictionless_heads, limit_load
 
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.bench.cases import FOLDER, KNOWN_STRUCTURES, SIZES, answer
-from dem_cli.bench.kernels import blocks_of
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.limit.analysis import limit_loads
+from dem_cli.app.bench.cases import FOLDER, KNOWN_STRUCTURES, SIZES, answer
+from dem_cli.app.bench.kernels import blocks_of
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.limit.analysis import limit_loads
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
 COMPUTED = [*KNOWN_STRUCTURES.values(), *(known for known in SIZES if blocks_of(known) <= 231)]

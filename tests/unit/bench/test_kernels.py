@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from dem_cli.bench.cases import SIZES
-from dem_cli.bench.kernels import COMPARED, FIRST_STEPS, KINDS, QUICK_BLOCKS, blocks_of, points_of, rows_of
-from dem_cli.bench.record import BenchOptions
+from dem_cli.app.bench.cases import SIZES
+from dem_cli.app.bench.kernels import COMPARED, FIRST_STEPS, KINDS, QUICK_BLOCKS, blocks_of, points_of, rows_of
+from dem_cli.app.bench.record import BenchOptions
 
 POINTS = 98  # of the wall of 21 blocks; as prisms it has two rows of them
 

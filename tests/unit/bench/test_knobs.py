@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.bench import precision
-from dem_cli.bench.cases import KNOWN_STRUCTURES, solve
-from dem_cli.bench.points import points_per_joint, refined, shares
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.simulation import Simulation
+from dem_cli.app.bench import precision
+from dem_cli.app.bench.cases import KNOWN_STRUCTURES, solve
+from dem_cli.app.bench.points import points_per_joint, refined, shares
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 
 def test_settings_of_a_run_are_named_in_its_summary():

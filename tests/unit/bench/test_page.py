@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from dem_cli.bench import page, registry
-from dem_cli.bench.record import GroupResult, group_table, read, record, records_of
+from dem_cli.app.bench import page, registry
+from dem_cli.app.bench.record import GroupResult, group_table, read, record, records_of
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 MACHINE = {"cores": 2, "processor": "some", "system": "Linux", "load": 0.5, "dem": "1", "python": "3.11"}

@@ -6,9 +6,9 @@ import json
 
 import pytest
 
-from dem_cli.bench import timing
-from dem_cli.bench.record import GroupResult, as_json, group_table, read, record, records_of
-from dem_cli.bench.timing import TimedTask, in_turn
+from dem_cli.app.bench import timing
+from dem_cli.app.bench.record import GroupResult, as_json, group_table, read, record, records_of
+from dem_cli.app.bench.timing import TimedTask, in_turn
 from dem_cli.errors import UsageError
 
 

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from synthetic.spatial_case import spatial_case
 
-from dem_cli.assembly.assemble import assemble
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.bench.kernels import blocks_of
-from dem_cli.bench.record import BenchOptions
-from dem_cli.bench.spatial import compas_walls, mujoco_walls, peers, sizes
-from dem_cli.bench.spatial.associated import associated_job
-from dem_cli.bench.spatial.boxes import boxes_of
-from dem_cli.bench.spatial.cases import KNOWN_IN_SPACE, MANY, SIZES_IN_SPACE, wall_out_of_plane
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.limit.analysis import limit_loads
+from dem_cli.app.bench.kernels import blocks_of
+from dem_cli.app.bench.record import BenchOptions
+from dem_cli.app.bench.spatial import compas_walls, mujoco_walls, peers, sizes
+from dem_cli.app.bench.spatial.associated import associated_job
+from dem_cli.app.bench.spatial.boxes import boxes_of
+from dem_cli.app.bench.spatial.cases import KNOWN_IN_SPACE, MANY, SIZES_IN_SPACE, wall_out_of_plane
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.limit.analysis import limit_loads
+from dem_cli.masonry.assembly.assemble import assemble
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 SQUARE = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
 TRIANGLE = SQUARE[:3]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from oracle.housner import Block, rock
 
-from dem_cli.bench.time_histories import LANDINGS, FirstMonitor, distance, landing_error
-from dem_cli.records.history_rows import Samples
+from dem_cli.app.bench.time_histories import LANDINGS, FirstMonitor, distance, landing_error
+from dem_cli.core.records.history_rows import Samples
 
 
 def history(times: np.ndarray, values: np.ndarray) -> FirstMonitor:

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from synthetic.spatial_case import extruded_tables, spatial_case
 
-from dem_cli.api import make_case_model
+from dem_cli.app.api import make_case_model
 from dem_cli.case.dimensions import NAME, SCOPES, in_space, known_in
 from dem_cli.case.keys import json_schema, tables
 from dem_cli.case.reader import CaseSource, validate

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 from pydantic import Field, TypeAdapter, ValidationError
 
-from dem_cli.api import make_case_model
+from dem_cli.app.api import make_case_model
 from dem_cli.case.base import CaseModel, Positive
 from dem_cli.case.explain import DOC_PAGES, entries, find
 from dem_cli.case.keys import KNOWN_UNITS, CaseTable, tables, toml
 from dem_cli.errors import UsageError
-from dem_cli.structures.registry import GENERATORS
+from dem_cli.masonry.structures.registry import GENERATORS
 
 MODEL = make_case_model()
 TABLES = tables(MODEL)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from dem_cli.api import load_case
+from dem_cli.app.api import load_case
 from dem_cli.case.overrides import key_path, value_at
 
 COLUMN = Path(__file__).resolve().parents[3] / "cases" / "verification" / "column_14.toml"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from dem_cli.api import build_model, load_case
+from dem_cli.app.api import build_model, load_case
 from dem_cli.case.overrides import literal, parse
 from dem_cli.errors import CaseError, CaseProblem, UsageError
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dem_cli.api import load_case
+from dem_cli.app.api import load_case
 from dem_cli.case.writer import case_text
 
 WALL = """

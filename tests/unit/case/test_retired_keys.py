@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from dem_cli import api
+from dem_cli.app import api
 from dem_cli.case import retired_keys
 from dem_cli.case.explain import find
 from dem_cli.case.retired_keys import RETIRED, RetiredKey

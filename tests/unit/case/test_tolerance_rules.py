@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from dem_cli.api import load_case
+from dem_cli.app.api import load_case
+from dem_cli.app.verify.case_selection import SHELVES
 from dem_cli.case.reference import Reference
 from dem_cli.case.tolerance_rules import KINDS, RULES
 from dem_cli.errors import CaseError
-from dem_cli.verify.case_selection import SHELVES
 
 CASE = """
 [materials.stone]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from casefiles import CASES, FILES, case_id
 
-from dem_cli.api import load_case
+from dem_cli.app.api import load_case
 from dem_cli.case.variation import value_at, with_value
 from dem_cli.errors import CaseError
 

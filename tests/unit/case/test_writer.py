@@ -11,11 +11,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from dem_cli import __version__
-from dem_cli.api import load_case
+from dem_cli.app.api import load_case
 from dem_cli.case.writer import case_text
 
 ROOT = Path(__file__).resolve().parents[3]
-CASES = sorted((ROOT / "cases").rglob("*.toml")) + sorted((ROOT / "dem_cli/cli/templates").glob("*.toml"))
+CASES = sorted((ROOT / "cases").rglob("*.toml")) + sorted((ROOT / "dem_cli/app/cli/templates").glob("*.toml"))
 
 
 def rewritten(path: Path, folder: Path, overrides: tuple[str, ...] = ()) -> tuple[str, str]:
@@ -39,7 +39,7 @@ def test_cases_and_templates(path, tmp_path):
 
 
 def test_overrides_are_in_it(tmp_path):
-    path = ROOT / "dem_cli/cli/templates/wall.toml"
+    path = ROOT / "dem_cli/app/cli/templates/wall.toml"
     text, again = rewritten(path, tmp_path, ("joints.dry.friction=0.55", "title=Mauer", "output.frames=0"))
     tables = tomllib.loads(text)
     assert text == again
@@ -51,7 +51,7 @@ def test_overrides_are_in_it(tmp_path):
 
 
 def test_defaults_are_in_it_and_lists_stand_on_one_line(tmp_path):
-    text, _ = rewritten(ROOT / "dem_cli/cli/templates/wall.toml", tmp_path)
+    text, _ = rewritten(ROOT / "dem_cli/app/cli/templates/wall.toml", tmp_path)
     assert 'kn = "auto"\n' in text
     assert "origin = [0.0, 0.0]\n" in text
     assert "gravity = 9.81\n" in text
@@ -60,7 +60,7 @@ def test_defaults_are_in_it_and_lists_stand_on_one_line(tmp_path):
 
 def test_a_default_that_may_not_stand_beside_another_stays_out(tmp_path):
     path = tmp_path / "case.toml"
-    text = (ROOT / "dem_cli/cli/templates/arch.toml").read_text(encoding="utf-8")
+    text = (ROOT / "dem_cli/app/cli/templates/arch.toml").read_text(encoding="utf-8")
     text = text.replace('shape = "circular"', 'shape = "segmental"\nspan = 2.0\nrise = 0.5\n#')
     text = text.replace("radius = 1.0", "#").replace("included_angle_deg", "#")
     path.write_text(text, encoding="utf-8")

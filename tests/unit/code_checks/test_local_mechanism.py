@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.code_checks.local_mechanism import check, zero_of
-from dem_cli.code_checks.oscillator import Participation
-from dem_cli.motion.eurocode import listed
+from dem_cli.core.code_checks.local_mechanism import check, zero_of
+from dem_cli.core.code_checks.oscillator import Participation
+from dem_cli.core.motion.eurocode import listed
 
 U = np.array([0.0, 0.001, 0.05, 0.1])
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.code_checks.n2 import MOST, check, demand, strongest
-from dem_cli.code_checks.oscillator import Participation, participation
-from dem_cli.motion.eurocode import eurocode, listed
+from dem_cli.core.code_checks.n2 import MOST, check, demand, strongest
+from dem_cli.core.code_checks.oscillator import Participation, participation
+from dem_cli.core.motion.eurocode import eurocode, listed
 
 FLAT = listed([(0.0, 10.0), (4.0, 10.0)])
 

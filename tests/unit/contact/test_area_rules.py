@@ -8,13 +8,13 @@ from scipy.spatial import ConvexHull
 from synthetic.spatial import spatial_model
 from synthetic.spatial_joints import KN, shifted, start_joints
 
-from dem_cli.contact import spatial
-from dem_cli.contact.area_rules import inner_points
-from dem_cli.contact.caps import centroid
-from dem_cli.geometry.polyhedron import box, hull
-from dem_cli.geometry.rotation import matrices
-from dem_cli.kernels.records import FACES
-from dem_cli.kernels.spatial_geometry import AREA, CENTRE
+from dem_cli.core.contact import spatial
+from dem_cli.core.contact.area_rules import inner_points
+from dem_cli.core.contact.caps import centroid
+from dem_cli.core.geometry.polyhedron import box, hull
+from dem_cli.core.geometry.rotation import matrices
+from dem_cli.core.kernels.records import FACES
+from dem_cli.core.kernels.spatial_geometry import AREA, CENTRE
 
 RECTANGLE = np.array([[0.0, 0.0], [0.4, 0.0], [0.4, 0.15], [0.0, 0.15]])
 SKEW = RECTANGLE @ np.array([[1.0, 0.3], [0.5, 1.0]])

@@ -9,15 +9,15 @@ from engine import rectangle, scene, simulation, solve, tables
 from scipy.sparse import diags
 from scipy.sparse.linalg import spsolve
 
-from dem_cli.assembly.sanity import problems
-from dem_cli.contact.compatibility import compatibility
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.engine.audit import unbending
-from dem_cli.engine.measures import shares_of_blocks
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.simulation import Simulation
+from dem_cli.core.contact.compatibility import compatibility
+from dem_cli.core.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.core.engine.audit import unbending
+from dem_cli.core.engine.measures import shares_of_blocks
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.model.scales import smallest_edge
 from dem_cli.errors import CaseError
-from dem_cli.model.scales import smallest_edge
+from dem_cli.masonry.assembly.sanity import problems
 
 E, NU, KN, KS = 2e9, 0.25, 4e10, 1e10
 G = E / (2.0 * (1.0 + NU))

@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
-from dem_cli.contact.caps import cap_over, centroid, half_profile, has_cap, slopes, steepest
-from dem_cli.contact.layout import PointLayout, draw
-from dem_cli.laws.profile import Profile
-from dem_cli.tables.declared import table_of
+from dem_cli.case.tables.declared import table_of
+from dem_cli.core.contact.caps import cap_over, centroid, half_profile, has_cap, slopes, steepest
+from dem_cli.core.contact.layout import PointLayout, draw
+from dem_cli.core.laws.profile import Profile
 
 UP = np.array([0.0, 0.0, 1.0])
 WIDE, DEEP = 0.4, 0.3  # [m]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from engine import running_wall, simulation, tables
 
-from dem_cli.contact.compatibility import compatibility, free_columns, relative_motion
-from dem_cli.geometry.rotation import frames, turned
+from dem_cli.core.contact.compatibility import compatibility, free_columns, relative_motion
+from dem_cli.core.geometry.rotation import frames, turned
 
 
 @pytest.fixture(scope="module")
@@ -46,8 +46,8 @@ def test_columns_are_those_of_free_blocks(wall):
 
 def test_the_same_matrix_gives_the_forces_on_the_blocks(wall):
     """Its transpose, by the contact loop: forces of the wall under its weight are in equilibrium."""
-    from dem_cli.engine.budget import Budget
-    from dem_cli.statics.equilibrium import stand
+    from dem_cli.core.engine.budget import Budget
+    from dem_cli.core.statics.equilibrium import stand
 
     assert stand(wall, Budget(10**6)).state == "equilibrium"
     contacts, free = wall.contacts, ~wall.model.fixed

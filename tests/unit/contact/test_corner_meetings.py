@@ -7,11 +7,11 @@ import pytest
 from engine import block, rectangle, simulation, tables
 from engine.limits import rotated
 
-from dem_cli.contact.geometry import geometry_of
-from dem_cli.contact.start import bodies_at_rest, corner_meetings
-from dem_cli.engine.placement import moves
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.kernels.records import HOLD_LOAD
+from dem_cli.core.contact.geometry import geometry_of
+from dem_cli.core.contact.start import bodies_at_rest, corner_meetings
+from dem_cli.core.engine.placement import moves
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.kernels.records import HOLD_LOAD
 
 PASSING = DEFAULT.detection.passing
 

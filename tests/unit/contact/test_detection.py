@@ -8,10 +8,10 @@ from engine import block, rectangle, running_wall, scene, simulation, tables
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem_cli.contact.detect import block_shape, find_joints, world_corners
-from dem_cli.contact.edges import edges_of
-from dem_cli.contact.joints import Faces
-from dem_cli.model.model import Model
+from dem_cli.core.contact.detect import block_shape, find_joints, world_corners
+from dem_cli.core.contact.edges import edges_of
+from dem_cli.core.contact.joints import Faces
+from dem_cli.core.model.model import Model
 
 REACH = 0.05
 

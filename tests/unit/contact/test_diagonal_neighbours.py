@@ -7,8 +7,8 @@ import pytest
 from engine import scene
 from synthetic.spatial_case import extruded_tables
 
-from dem_cli.contact.gaps import gaps_of_start
-from dem_cli.engine.kinematics import why_moving
+from dem_cli.core.contact.gaps import gaps_of_start
+from dem_cli.core.engine.kinematics import why_moving
 
 GAP = 3e-4  # [m]; up to 1.4 mm closes between such blocks
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])

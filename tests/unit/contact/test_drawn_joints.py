@@ -7,10 +7,10 @@ import pytest
 from engine import block, rectangle, scene, tables
 from synthetic import boxes_model, no_contacts
 
-from dem_cli.contact.drawn_joints import OPEN, SLIDING, STICKING, DrawnJoints
-from dem_cli.geometry.rotation import turned_as_one
-from dem_cli.model.model import Model
-from dem_cli.records.frames import ContactRecord
+from dem_cli.core.contact.drawn_joints import OPEN, SLIDING, STICKING, DrawnJoints
+from dem_cli.core.geometry.rotation import turned_as_one
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import ContactRecord
 
 B, H, DEPTH = 0.5, 2.0, 0.080
 

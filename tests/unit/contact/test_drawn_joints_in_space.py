@@ -8,12 +8,12 @@ from scipy.spatial.transform import Rotation
 from synthetic.spatial import extruded, spatial_model
 from synthetic.spatial_joints import one_joint, shifted, start_joints
 
-from dem_cli.contact.between import StartJoints
-from dem_cli.contact.drawn_joints import OPEN, SLIDING, DrawnJoints
-from dem_cli.contact.gaps import gaps_of_start, wedges_of_start
-from dem_cli.geometry.polyhedron import Polyhedron, box, hull
-from dem_cli.geometry.rotation import matrices, quaternions, unturned
-from dem_cli.records.frames import ContactRecord
+from dem_cli.core.contact.between import StartJoints
+from dem_cli.core.contact.drawn_joints import OPEN, SLIDING, DrawnJoints
+from dem_cli.core.contact.gaps import gaps_of_start, wedges_of_start
+from dem_cli.core.geometry.polyhedron import Polyhedron, box, hull
+from dem_cli.core.geometry.rotation import matrices, quaternions, unturned
+from dem_cli.core.records.frames import ContactRecord
 
 BASE = box([-2.0, -2.0, -0.5], [2.0, 2.0, 0.0])
 B, D = 0.5, 0.8

@@ -9,9 +9,9 @@ import pytest
 from synthetic import boxes_model
 from synthetic.spatial_case import spatial_case
 
-from dem_cli.assembly.assemble import assemble
-from dem_cli.contact.gaps import gaps_of_start
-from dem_cli.model.places import block_at, inside_blocks, undeformed
+from dem_cli.core.contact.gaps import gaps_of_start
+from dem_cli.core.model.places import block_at, inside_blocks, undeformed
+from dem_cli.masonry.assembly.assemble import assemble
 
 WIDTH = 0.03
 

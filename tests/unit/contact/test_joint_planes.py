@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from engine import block, rectangle, running_wall, scene, tables
 
-from dem_cli.contact.joint_planes import in_planes
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.engine.properties import joint_properties
-from dem_cli.kernels.records import FixedJoints, MovingJoints
-from dem_cli.model.scales import smallest_edge
+from dem_cli.core.contact.joint_planes import in_planes
+from dem_cli.core.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.core.engine.properties import joint_properties
+from dem_cli.core.kernels.records import FixedJoints, MovingJoints
+from dem_cli.core.model.scales import smallest_edge
 
 N_BLOCKS, COUNTS = 4, np.array([1, 4, 3, 5, 2])
 

@@ -8,20 +8,20 @@ from synthetic.skins import model_of, open_area
 from synthetic.spatial_case import spatial_case
 from synthetic.spatial_joints import KN, one_joint, start_joints
 
-from dem_cli.assembly.assemble import assembly
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.assembly.validate import warnings
-from dem_cli.contact import spatial
-from dem_cli.contact.assemble import build_joints
-from dem_cli.contact.between import StartJoints
-from dem_cli.contact.detect import block_shape, world_corners
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.geometry.rotation import turns_of
-from dem_cli.kernels.records import FACES
-from dem_cli.limit.analysis import start_structure
-from dem_cli.limit.cone import envelope_of
-from dem_cli.model.scales import smallest_edge
+from dem_cli.core.contact import spatial
+from dem_cli.core.contact.assemble import build_joints
+from dem_cli.core.contact.between import StartJoints
+from dem_cli.core.contact.detect import block_shape, world_corners
+from dem_cli.core.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.geometry.rotation import turns_of
+from dem_cli.core.kernels.records import FACES
+from dem_cli.core.limit.analysis import start_structure
+from dem_cli.core.limit.cone import envelope_of
+from dem_cli.core.model.scales import smallest_edge
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.assembly.solver_request import solver_request
+from dem_cli.masonry.assembly.validate import warnings
 
 LENGTH, HEIGHT, THICKNESS = 3.0, 1.6, 0.5
 COURSED = {

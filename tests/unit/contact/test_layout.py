@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from dem_cli.contact.area_rules import AT_CENTRE, ON_DIAGONALS, REACH
-from dem_cli.contact.layout import PointLayout, draw, lobatto, steepest
-from dem_cli.geometry.profile import angles
-from dem_cli.laws.coulomb import CoulombJoint
-from dem_cli.laws.profile import Profile
-from dem_cli.tables.declared import table_of
+from dem_cli.case.tables.declared import table_of
+from dem_cli.core.contact.area_rules import AT_CENTRE, ON_DIAGONALS, REACH
+from dem_cli.core.contact.layout import PointLayout, draw, lobatto, steepest
+from dem_cli.core.geometry.profile import angles
+from dem_cli.core.laws.coulomb import CoulombJoint
+from dem_cli.core.laws.profile import Profile
 
 keys = st.tuples(st.integers(0, 10**6), st.integers(0, 10**6))
 

@@ -7,8 +7,8 @@ import pytest
 from engine import block, rectangle, simulation, steps, tables
 from studies.space.structures import box
 
-from dem_cli.engine.simulation import Simulation
-from dem_cli.kernels import records as slot
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.kernels import records as slot
 
 W = 2000.0 * 9.81  # of the unit block [N]
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from engine import block, rectangle, running_wall, simulation, tables
 
-from dem_cli.contact.geometry import GEOMETRY, NarrowPhase
-from dem_cli.contact.keys import same_rows
+from dem_cli.core.contact.geometry import GEOMETRY, NarrowPhase
+from dem_cli.core.contact.keys import same_rows
 
 
 @pytest.mark.parametrize("dimension", GEOMETRY)

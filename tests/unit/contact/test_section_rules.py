@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from oracle.fibre_section import Bond, Section, bent, rectangle, square_about_its_diagonal
 
-from dem_cli.contact.area_rules import AT_CORNER, section_points
-from dem_cli.contact.layout import SECTION, PointLayout, draw, lobatto
-from dem_cli.contact.layout import section as in_the_plane
-from dem_cli.laws.stiffness import SECTION as OF_LAWS
+from dem_cli.core.contact.area_rules import AT_CORNER, section_points
+from dem_cli.core.contact.layout import SECTION, PointLayout, draw, lobatto
+from dem_cli.core.contact.layout import section as in_the_plane
+from dem_cli.core.laws.stiffness import SECTION as OF_LAWS
 
 PRESSED = np.concatenate([np.linspace(-0.9, 0.0, 10), np.linspace(0.0, 1.2, 49), [1.5, 2.0, 3.0]])  # N / ft A
 CRUSHED = np.concatenate([np.geomspace(0.005, 0.1, 20), np.linspace(0.1, 0.9, 81), 1 - np.geomspace(0.1, 0.005, 20)])

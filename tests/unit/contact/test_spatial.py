@@ -10,18 +10,18 @@ from scipy.optimize import linprog
 from synthetic.spatial import extruded, spatial_model
 from synthetic.spatial_joints import KN, KS, near_pairs, one_joint, shifted, start_joints, turned
 
-from dem_cli.contact import near_boxes, spatial
-from dem_cli.contact.compatibility import compatibility
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.geometry import polygon
-from dem_cli.geometry.polyhedron import Polyhedron, box, hull, prism
-from dem_cli.geometry.rotation import matrices, moments
-from dem_cli.kernels.records import EDGES, FACES, RIM_OF_A, RIM_OF_B
-from dem_cli.kernels.spatial_geometry import AREA, CENTRE, POLAR
-from dem_cli.model.bodies import bodies_of
-from dem_cli.model.model import Model
-from dem_cli.model.places import undeformed
-from dem_cli.model.scales import smallest_edge
+from dem_cli.core.contact import near_boxes, spatial
+from dem_cli.core.contact.compatibility import compatibility
+from dem_cli.core.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.core.geometry import polygon
+from dem_cli.core.geometry.polyhedron import Polyhedron, box, hull, prism
+from dem_cli.core.geometry.rotation import matrices, moments
+from dem_cli.core.kernels.records import EDGES, FACES, RIM_OF_A, RIM_OF_B
+from dem_cli.core.kernels.spatial_geometry import AREA, CENTRE, POLAR
+from dem_cli.core.model.bodies import bodies_of
+from dem_cli.core.model.model import Model
+from dem_cli.core.model.places import undeformed
+from dem_cli.core.model.scales import smallest_edge
 
 
 def corners_of(model, block: int) -> np.ndarray:

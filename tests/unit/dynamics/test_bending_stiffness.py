@@ -7,7 +7,7 @@ import re
 import pytest
 from engine import block, rectangle, scene, solve, tables
 
-from dem_cli.dynamics.bending_stiffness import bending_doubts
+from dem_cli.core.dynamics.bending_stiffness import bending_doubts
 
 DENSITY, G = 2000.0, 9.81
 SHAKEN = {"kind": "time-history", "duration": 0.02, "settle": False}

@@ -9,12 +9,12 @@ from engine import block, rectangle, tables
 from oracle.base_motion import Sine
 from oracle.housner import Block, rock
 
-from dem_cli.cli.words.fragility import fragility_rows
-from dem_cli.dynamics.coda import Swings, undecided
-from dem_cli.engine.settings import DEFAULT
+from dem_cli.app.cli.words.fragility import fragility_rows
+from dem_cli.core.dynamics.coda import Swings, undecided
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.records.statuses import MOVES, ROCKS, STOOD
 from dem_cli.errors import SolverError
-from dem_cli.output.ending import ending_words, last_words
-from dem_cli.records.statuses import MOVES, ROCKS, STOOD
+from dem_cli.results.output.ending import ending_words, last_words
 
 WIDTH, HEIGHT, FREQUENCY = 1.0, 6.0, 0.8
 GROUND = block("ground", rectangle(-30.0, -1.0, 30.0, 0.0), fixed=True)

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from engine import block, rectangle, tables
 
-from dem_cli.assembly.ground_motions import motions_of
-from dem_cli.ensembles.shaken_run import RestedStructure
-from dem_cli.ensembles.variants import Variant
+from dem_cli.analyses.ensembles.shaken_run import RestedStructure
+from dem_cli.analyses.ensembles.variants import Variant
 from dem_cli.errors import CaseError
+from dem_cli.masonry.assembly.ground_motions import motions_of
 
 G, DENSITY, WIDTH, HEIGHT, COUNT = 9.81, 2000.0, 0.8, 0.4, 3
 MASS = DENSITY * WIDTH * HEIGHT  # of one block, 1 m deep

@@ -10,16 +10,16 @@ import pytest
 from engine import scene, tables
 from scipy.integrate import solve_ivp
 
-from dem_cli.dynamics.initial_state import tilt
-from dem_cli.engine import measures
-from dem_cli.engine.dynamic import DynamicSimulation
-from dem_cli.engine.placement import moves
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.viscous import Damping
-from dem_cli.geometry.inertia import along_principal
-from dem_cli.geometry.rotation import matrices, quaternions, rotation_vectors, turned_since
-from dem_cli.kernels import records as slot
-from dem_cli.kernels.records import Ground, Watch
+from dem_cli.core.dynamics.initial_state import tilt
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.dynamic import DynamicSimulation
+from dem_cli.core.engine.placement import moves
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.viscous import Damping
+from dem_cli.core.geometry.inertia import along_principal
+from dem_cli.core.geometry.rotation import matrices, quaternions, rotation_vectors, turned_since
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.kernels.records import Ground, Watch
 
 BOX = [[x, y, z] for x in (0.0, 0.5) for y in (0.0, 0.8) for z in (0.0, 1.4)]
 WEDGE = [[0, 0, 0], [2, 0, 0], [0, 1, 0], [0.3, 0.2, 1.5], [1, 0.2, 1.2]]  # its principal axes are askew

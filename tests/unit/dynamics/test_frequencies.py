@@ -13,11 +13,11 @@ from engine import block, rectangle, running_wall, simulation, tables
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem_cli.dynamics.frequencies import highest_frequency, limiting, modes, system
-from dem_cli.dynamics.time_step import time_step
-from dem_cli.engine.settings import DEFAULT
+from dem_cli.core.dynamics.frequencies import highest_frequency, limiting, modes, system
+from dem_cli.core.dynamics.time_step import time_step
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.kernels.contact_forces import make_contact_forces
 from dem_cli.errors import CaseError
-from dem_cli.kernels.contact_forces import make_contact_forces
 
 BOOK = Path(__file__).resolve().parents[2] / "reference" / "classical_benchmarks.toml"
 

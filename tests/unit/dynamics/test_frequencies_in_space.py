@@ -9,12 +9,12 @@ import pytest
 from engine import block, scene, simulation, tables
 from scipy.spatial.transform import Rotation
 
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.dynamics.frequencies import limiting, modes, system
-from dem_cli.dynamics.landing import landing
-from dem_cli.dynamics.rocking_stiffness import turn_sideways
-from dem_cli.engine.properties import joint_properties
-from dem_cli.model.scales import smallest_edge
+from dem_cli.core.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.core.dynamics.frequencies import limiting, modes, system
+from dem_cli.core.dynamics.landing import landing
+from dem_cli.core.dynamics.rocking_stiffness import turn_sideways
+from dem_cli.core.engine.properties import joint_properties
+from dem_cli.core.model.scales import smallest_edge
 
 SIDES = np.array([0.5, 0.8, 1.5])
 TILTED = Rotation.from_rotvec([0.4, -0.7, 0.5])

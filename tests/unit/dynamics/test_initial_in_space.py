@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from engine import block, rectangle, scene, tables
 
-from dem_cli.dynamics.initial_state import set_initial
-from dem_cli.engine.dynamic import DynamicSimulation
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.viscous import Damping
+from dem_cli.core.dynamics.initial_state import set_initial
+from dem_cli.core.engine.dynamic import DynamicSimulation
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.viscous import Damping
+from dem_cli.core.geometry.rotation import angles_of, matrices, rotation_vectors
 from dem_cli.errors import CaseError
-from dem_cli.geometry.rotation import angles_of, matrices, rotation_vectors
 
 LOWER, UPPER = 1, 2
 SHAKEN = {"kind": "time-history", "duration": 1.0}

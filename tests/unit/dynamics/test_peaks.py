@@ -8,14 +8,14 @@ import pytest
 from engine import Records, block, rectangle, tables
 from scipy.integrate import solve_ivp
 
-from dem_cli.assembly.ground_motions import motions_of
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.dynamics.ground import GroundMotion
-from dem_cli.dynamics.history import TimeHistory
-from dem_cli.engine.job import Job
-from dem_cli.ensembles.shaken_run import RestedStructure
-from dem_cli.ensembles.variants import Variant
-from dem_cli.output.store import ResultWriter
+from dem_cli.analyses.ensembles.shaken_run import RestedStructure
+from dem_cli.analyses.ensembles.variants import Variant
+from dem_cli.core.dynamics.ground import GroundMotion
+from dem_cli.core.dynamics.history import TimeHistory
+from dem_cli.core.engine.job import Job
+from dem_cli.masonry.assembly.ground_motions import motions_of
+from dem_cli.masonry.assembly.solver_request import solver_request
+from dem_cli.results.output.store import ResultWriter
 
 HIGH, HIGH_AT, LOW, LOW_AT = 0, 1, 2, 3
 G, HEIGHT, FREQUENCY = 9.81, 6.0, 0.8
@@ -145,7 +145,7 @@ def test_a_coda_that_ends_too_early_says_so():
 
 def test_tall_structures_are_followed_longer():
     """20 √(H/2g): twice as long at four times the height; 5 s at least."""
-    from dem_cli.dynamics.coda import longest_coda
+    from dem_cli.core.dynamics.coda import longest_coda
 
     made = engine.scene(shaken(2.2))
     assert longest_coda(made.request, made.model) == pytest.approx(20.0 * np.sqrt(3.0 / 9.81))

@@ -7,9 +7,9 @@ import pytest
 from engine import block, rectangle, simulation, tables
 from studies.space.structures import box
 
-from dem_cli.dynamics.pressed_stiffness import root_of_stiffness
-from dem_cli.engine.simulation import Simulation
-from dem_cli.kernels.deformation.pressed_faces import fan_out_all, share_pressure
+from dem_cli.core.dynamics.pressed_stiffness import root_of_stiffness
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.kernels.deformation.pressed_faces import fan_out_all, share_pressure
 
 KN = 1e9
 JOINTS = {"dry": {"friction": 0.6, "kn": KN}}

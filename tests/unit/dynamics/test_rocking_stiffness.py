@@ -15,14 +15,14 @@ from oracle.newmark_slider import Slope, slide
 from dem_cli.analyses.estimate import describe
 from dem_cli.analyses.stiffness_check import change, trifles
 from dem_cli.analyses.time_history import alone
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.dynamics.rocking_stiffness import rocking_stiffness, turn_sideways
-from dem_cli.engine.properties import joint_properties
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.model.scales import smallest_edge
-from dem_cli.output.ending import ending_words
-from dem_cli.records.requests import MonitorRequest
+from dem_cli.core.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.core.dynamics.rocking_stiffness import rocking_stiffness, turn_sideways
+from dem_cli.core.engine.properties import joint_properties
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.model.scales import smallest_edge
+from dem_cli.core.records.requests import MonitorRequest
+from dem_cli.masonry.assembly.solver_request import solver_request
+from dem_cli.results.output.ending import ending_words
 
 KN, DENSITY, G = 1e9, 2000.0, 9.81
 GROUND = block("ground", rectangle(-30.0, -1.0, 30.0, 0.0), fixed=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dem_cli.dynamics.ground import AHEAD, RowsAhead
+from dem_cli.core.dynamics.ground import AHEAD, RowsAhead
 
 STEP = 1e-3 / 3.0
 

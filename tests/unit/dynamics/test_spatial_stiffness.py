@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from oracle.contact_in_space import BOTH, CROSSING, FACE_OF_A, FACE_OF_B, ContactPoint
 
-from dem_cli.dynamics.spatial_stiffness import Attachment, cross_matrices, second_derivatives
+from dem_cli.core.dynamics.spatial_stiffness import Attachment, cross_matrices, second_derivatives
 
 
 def unit(values) -> np.ndarray:

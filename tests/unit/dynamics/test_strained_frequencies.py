@@ -10,10 +10,10 @@ from engine import scene
 from studies.deformable.elastic_wall import corners_of
 from studies.deformable.finite_elements import ElasticWall, frequencies
 
-from dem_cli.dynamics.frequencies import modes, system
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.simulation import Simulation
-from dem_cli.model.mode_masses import mass_matrices
+from dem_cli.core.dynamics.frequencies import modes, system
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.model.mode_masses import mass_matrices
 
 YOUNG, DENSITY, DEEP, STIFF = 1e9, 2000.0, 0.5, 1e15
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from engine import block, rectangle, running_wall, simulation, solve, tables
 
-from dem_cli.engine.budget import Budget
-from dem_cli.kernels import records as slot
-from dem_cli.statics.equilibrium import relax, settle_or_fail, stand
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.statics.equilibrium import relax, settle_or_fail, stand
 
 GROUND = block("ground", rectangle(-1.0, -0.5, 1.0, 0.0), fixed=True)
 LIGHT = 0.6 / (9.81 * 0.25**2)  # kg/m3: a block of 0.6 N

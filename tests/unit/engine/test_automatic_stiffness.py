@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from engine import Scene, block, rectangle, scene, simulation, tables
 
-from dem_cli.engine.automatic_stiffness import leaning, needed_ratio, ratio_of, shown_closure
-from dem_cli.engine.settings import DEFAULT
+from dem_cli.core.engine.automatic_stiffness import leaning, needed_ratio, ratio_of, shown_closure
+from dem_cli.core.engine.settings import DEFAULT
 
 RATIO = DEFAULT.stiffness.statics
 RESOLUTION = 0.002
@@ -96,7 +96,7 @@ def test_stiffness_grows_with_what_leans():
 
 
 def test_joints_that_bond_lean_by_less_than_the_resolution():
-    """Their closure is not taken back (engine/rigid_joints.py)."""
+    """Their closure is not taken back (core/engine/rigid_joints.py)."""
     joints = {"dry": {"law": "mohr-coulomb", "friction": 0.6, "cohesion": 1e5}}
     sim = simulation(tables(BASE, *stack(30, 0.5, 1.0), joints=joints), "large", RATIO)
     assert not sim.takes_back

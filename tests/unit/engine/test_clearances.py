@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 from oracle import rolling_polygons as statics
 from scipy.spatial.transform import Rotation
 
-from dem_cli.contact.detect import find_joints
-from dem_cli.contact.edges import widest_gaps
-from dem_cli.contact.geometry import geometry_of
-from dem_cli.contact.planar import microrotations
-from dem_cli.engine.placement.clearances import beyond, gap_play, play
-from dem_cli.engine.settings import DEFAULT
+from dem_cli.core.contact.detect import find_joints
+from dem_cli.core.contact.edges import widest_gaps
+from dem_cli.core.contact.geometry import geometry_of
+from dem_cli.core.contact.planar import microrotations
+from dem_cli.core.engine.placement.clearances import beyond, gap_play, play
+from dem_cli.core.engine.settings import DEFAULT
 
 CLEARANCE = DEFAULT.clearance
 

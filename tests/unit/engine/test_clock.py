@@ -5,10 +5,10 @@ from __future__ import annotations
 import numba
 import pytest
 
-from dem_cli.engine.clock import Clock
-from dem_cli.kernels.compilation.compile_time import Compilation
-from dem_cli.kernels.compilation.numba_setup import set_up_numba
-from dem_cli.records.ports import Observer
+from dem_cli.core.engine.clock import Clock
+from dem_cli.core.kernels.compilation.compile_time import Compilation
+from dem_cli.core.kernels.compilation.numba_setup import set_up_numba
+from dem_cli.core.records.ports import Observer
 
 
 @pytest.fixture(autouse=True, scope="module")

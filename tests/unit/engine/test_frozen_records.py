@@ -8,7 +8,7 @@ import pickle
 import pytest
 
 from dem_cli import frozen_records
-from dem_cli.engine.settings import DEFAULT, Settings
+from dem_cli.core.engine.settings import DEFAULT, Settings
 
 
 def record(dataclass):

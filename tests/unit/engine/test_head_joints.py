@@ -12,14 +12,14 @@ from engine import block, rectangle, scene, solve, tables
 from engine.limits import solved
 from scipy.stats import lognorm
 
-from dem_cli.assembly.assemble import assembly
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.engine.properties import joint_properties
+from dem_cli.core.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.core.engine.properties import joint_properties
+from dem_cli.core.kernels.records import Joints
+from dem_cli.core.model.model import Model
+from dem_cli.core.model.places import undeformed
+from dem_cli.core.model.scales import smallest_edge
 from dem_cli.errors import CaseError
-from dem_cli.kernels.records import Joints
-from dem_cli.model.model import Model
-from dem_cli.model.places import undeformed
-from dem_cli.model.scales import smallest_edge
+from dem_cli.masonry.assembly.assemble import assembly
 
 GLUE = {"law": "mohr-coulomb", "friction": 1.0, "cohesion": 1e8, "tension": 5e7}
 GAP = 1e-4  # between drawn blocks whose heads are open [m]: far more than touches, nothing beside the blocks
@@ -229,7 +229,7 @@ def test_heads_of_drawn_blocks_change_nothing_and_are_said():
     case = tables(block("base", rectangle(-1, -1, 1, 0), fixed=True), block("a", rectangle(0, 0, 1, 1)))
     case["joints"]["dry"]["head"] = "none"
     made = scene(case)
-    from dem_cli.assembly import sanity
+    from dem_cli.masonry.assembly import sanity
 
     said = [one.message for one in sanity.doubts(made.case, made.model, assembly(made.case).blocks, ())]
     assert [text for text in said if text.startswith("'none' changes nothing")]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from engine import scene
 
-from dem_cli.engine.monitors import Monitors
-from dem_cli.geometry.rotation import matrices
+from dem_cli.core.engine.monitors import Monitors
+from dem_cli.core.geometry.rotation import matrices
 
 B, D = 0.5, 0.8
 

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from engine import block, rectangle, scene, simulation, tables
 
-from dem_cli.engine.dynamic import DynamicSimulation
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.engine.simulation import Simulation
-from dem_cli.engine.viscous import Damping
-from dem_cli.output.resume.kept_objects import decoded, encoded
-from dem_cli.output.resume.kept_values import Damaged
+from dem_cli.core.engine.dynamic import DynamicSimulation
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.engine.viscous import Damping
+from dem_cli.results.output.resume.kept_objects import decoded, encoded
+from dem_cli.results.output.resume.kept_values import Damaged
 
 FREE = {  # numbers that lead nowhere: names by which points are known again, marks, room
     "PlanarGeometry.features", "SpatialGeometry.features", "SpatialMotion.features", "SpatialMotion.labels",

@@ -7,9 +7,9 @@ import pytest
 from engine import simulation
 from studies.space.structures import box, tables
 
-from dem_cli.engine import measures
-from dem_cli.geometry.rotation import matrices
-from dem_cli.kernels import records as slot
+from dem_cli.core.engine import measures
+from dem_cli.core.geometry.rotation import matrices
+from dem_cli.core.kernels import records as slot
 
 MOVED, TURNED = np.array([0.4, -0.1, 0.2]), np.array([0.2, -0.3, 0.5])
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.api import build_model, load_case
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.engine.monitors import Monitors
+from dem_cli.app.api import build_model, load_case
+from dem_cli.core.engine.monitors import Monitors
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 CASE = """
 [materials.stone]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from synthetic.spatial_case import spatial_case
 
-from dem_cli.assembly.assemble import assemble
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.engine.monitors import Monitors
+from dem_cli.core.engine.monitors import Monitors
+from dem_cli.masonry.assembly.assemble import assemble
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 COLUMN = {"kind": "column", "block": [0.4, 1.2], "courses": 1, "thickness": 0.6, "rotation_deg": 30.0,
           "origin": [1.0, 2.0, 3.0]}  # fmt: skip

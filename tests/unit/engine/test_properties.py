@@ -7,10 +7,10 @@ import pytest
 from casefiles import CASES
 from engine import block, rectangle, scene, solve, tables
 
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.simulation import Simulation
-from dem_cli.model.scales import smallest_edge
+from dem_cli.core.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.model.scales import smallest_edge
 
 CUBE = {"polygon": [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], "y": [0.0, 1.0], "material": "stone"}
 ABOVE = CUBE | {"polygon": [[0.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]]}

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from engine import block, rectangle, scene, simulation, tables
 
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.engine import audit, measures
+from dem_cli.core.engine import audit, measures
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 GROUND = block("ground", rectangle(-3, -1, 6, 0), fixed=True)
 CRATE = block("crate", rectangle(0, 0, 1, 1))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from engine import block, rectangle, scene, solve, tables
 
-from dem_cli.assembly.validate import cut_problems
-from dem_cli.model.section_cuts import section_cut, section_forces
+from dem_cli.core.model.section_cuts import section_cut, section_forces
+from dem_cli.masonry.assembly.validate import cut_problems
 
 G, DENSITY, WIDTH, HEIGHT, COUNT = 9.81, 2000.0, 0.5, 0.4, 4
 WEIGHT = G * DENSITY * WIDTH * HEIGHT  # of one block of the column, in 3D of a depth of 1 m

@@ -9,16 +9,16 @@ import pytest
 from engine import scene
 from scipy.optimize import curve_fit
 
-from dem_cli.dynamics.frequencies import modes, system
-from dem_cli.dynamics.time_step import time_step
-from dem_cli.engine import measures
-from dem_cli.engine.dynamic import DynamicSimulation
-from dem_cli.engine.placement import moves
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.viscous import Damping, strain_rates, turned_loads
-from dem_cli.geometry.rotation import moments, turning, turns_of
-from dem_cli.kernels import records as slot
-from dem_cli.model.uniform_strain import mode_loads
+from dem_cli.core.dynamics.frequencies import modes, system
+from dem_cli.core.dynamics.time_step import time_step
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.dynamic import DynamicSimulation
+from dem_cli.core.engine.placement import moves
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.viscous import Damping, strain_rates, turned_loads
+from dem_cli.core.geometry.rotation import moments, turning, turns_of
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.model.uniform_strain import mode_loads
 
 N, HIGH, DEEP, SAMPLED = 3, 0.3, 0.5, 10
 

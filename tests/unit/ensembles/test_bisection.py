@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from dem_cli.ensembles.bisection import Ends, Scale, changes, first_change, search
+from dem_cli.analyses.ensembles.bisection import Ends, Scale, changes, first_change, search
 
 FACTORS = Scale(0.05, 20.0, ratio=True)
 

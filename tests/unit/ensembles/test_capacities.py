@@ -7,14 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from dem_cli.ensembles.batch import ShakingTrial
-from dem_cli.ensembles.capacities import between, bounds_of, outcomes, split, survived_above
-from dem_cli.ensembles.record_search import bisection, runs_per_record
-from dem_cli.ensembles.shaken_run import ShakenRunResult
+from dem_cli.analyses.ensembles.batch import ShakingTrial
+from dem_cli.analyses.ensembles.capacities import between, bounds_of, outcomes, split, survived_above
+from dem_cli.analyses.ensembles.record_search import bisection, runs_per_record
+from dem_cli.analyses.ensembles.shaken_run import ShakenRunResult
+from dem_cli.case.tables.analysis import FragilityAnalysis
 from dem_cli.errors import CaseError
-from dem_cli.output.distinct_names import distinct
-from dem_cli.output.ending import median_words
-from dem_cli.tables.analysis import FragilityAnalysis
+from dem_cli.results.output.distinct_names import distinct
+from dem_cli.results.output.ending import median_words
 
 
 def run_of(collapsed):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from dem_cli.ensembles.lognormal import fit
+from dem_cli.analyses.ensembles.lognormal import fit
 
 
 def bounds(seed: int, step: float = 0.05, n: int = 20, dispersion: float = 0.15):

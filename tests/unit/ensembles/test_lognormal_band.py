@@ -10,9 +10,9 @@ import pytest
 from scipy import stats
 from scipy.optimize import brentq
 
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.ensembles.capacities import distribution
-from dem_cli.ensembles.lognormal_band import confidence_band
+from dem_cli.analyses.ensembles.capacities import distribution
+from dem_cli.analyses.ensembles.lognormal_band import confidence_band
+from dem_cli.core.engine.settings import DEFAULT
 
 MEDIAN, DISPERSION, AT = 1.3, 0.3, 1.1
 TAILS = np.array([0.05, 0.95])

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from synthetic.spatial_case import spatial_case
 
+from dem_cli.analyses.ensembles.record_search import records_of, scaled
 from dem_cli.case.schema import Case
-from dem_cli.ensembles.record_search import records_of, scaled
 from dem_cli.errors import CaseError
 
 WALL = {"kind": "wall", "block": [1.0, 0.5], "courses": 2, "blocks_per_course": 2}

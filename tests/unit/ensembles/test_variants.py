@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli import api
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.ensembles.variants import Variant, other_sizes
-from dem_cli.model.places import undeformed
+from dem_cli.analyses.ensembles.variants import Variant, other_sizes
+from dem_cli.app import api
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.model.places import undeformed
 
 CASE = """\
 [materials.stone]

@@ -14,13 +14,13 @@ import trimesh
 from scipy.spatial import ConvexHull
 from synthetic.spatial_case import spatial_case
 
-from dem_cli.api import build_model, load_case, make_case_model
-from dem_cli.assembly.assemble import assembly
+from dem_cli.app.api import build_model, load_case, make_case_model
+from dem_cli.app.cli.main import main
 from dem_cli.case.reader import CaseSource, validate
-from dem_cli.cli.main import main
-from dem_cli.exports.contents import ExportedCase
-from dem_cli.exports.formats import EXPORT_FORMATS, write_case
-from dem_cli.structures.imported import Import, imported, unsaid
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.exports.contents import ExportedCase
+from dem_cli.masonry.exports.formats import EXPORT_FORMATS, write_case
+from dem_cli.masonry.structures.imported import Import, imported, unsaid
 
 DRAWN = Path(__file__).resolve().parents[2] / "drawn"
 STONE, WOOD = 2143.0, 800.0
@@ -411,7 +411,7 @@ def run(*words: str) -> None:
 
 
 def test_every_format_is_in_the_help_and_a_script_needs_its_whole_ending(tmp_path):
-    from dem_cli.cli.build import command
+    from dem_cli.app.cli.build import command
 
     assert not [suffix for suffix in EXPORT_FORMATS if suffix not in (command.help or "")]
     with pytest.raises(Exception, match=r"a script for LMGC90 is called x.lmgc90.py"):

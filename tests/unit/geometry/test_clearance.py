@@ -10,8 +10,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from dem_cli.geometry import polygon
-from dem_cli.geometry.clearance import clearances
+from dem_cli.core.geometry import polygon
+from dem_cli.core.geometry.clearance import clearances
 
 PLACES = st.tuples(st.floats(-2.0, 2.0), st.floats(-3.0, 3.0))
 

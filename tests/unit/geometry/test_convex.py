@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem_cli.geometry.convex import common, distance
+from dem_cli.core.geometry.convex import common, distance
 
 SIGNS = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 coordinates = st.tuples(*[st.floats(-3.0, 3.0)] * 3)

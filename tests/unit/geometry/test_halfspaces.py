@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.geometry import polyhedron, solids
-from dem_cli.geometry.halfspaces import behind_all, halves
-from dem_cli.geometry.topology import topology_of_polyhedra
+from dem_cli.core.geometry import polyhedron, solids
+from dem_cli.core.geometry.halfspaces import behind_all, halves
+from dem_cli.core.geometry.topology import topology_of_polyhedra
 
 
 def volume(solid):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.geometry import pockets, polygon
-from dem_cli.structures.voids import overlap
+from dem_cli.core.geometry import pockets, polygon
+from dem_cli.masonry.structures.voids import overlap
 
 OUTLINES = {
     "square": [[0, 0], [2, 0], [2, 1], [0, 1]],

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dem_cli.geometry import polygon
+from dem_cli.core.geometry import polygon
 
 ANGLES = st.floats(-math.pi, math.pi)
 SHIFTS = st.tuples(st.floats(-1e3, 1e3), st.floats(-1e3, 1e3))

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from dem_cli.geometry import polygon, polyhedron, solids
-from dem_cli.geometry.polyhedron import Polyhedron, box, from_faces, hull, prism, prisms
-from dem_cli.geometry.rotation import matrices
-from dem_cli.geometry.topology import topology_of_polyhedra
+from dem_cli.core.geometry import polygon, polyhedron, solids
+from dem_cli.core.geometry.polyhedron import Polyhedron, box, from_faces, hull, prism, prisms
+from dem_cli.core.geometry.rotation import matrices
+from dem_cli.core.geometry.topology import topology_of_polyhedra
 
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
 CUBE_FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]

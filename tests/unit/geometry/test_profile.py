@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from oracle.rolling_column import fall, foot
 
-from dem_cli.geometry.profile import angles, polygon, regular, slopes
+from dem_cli.core.geometry.profile import angles, polygon, regular, slopes
 
 lengths = st.lists(st.floats(0.01, 1.0), min_size=2, max_size=12)
 apertures = st.floats(1e-7, 1e-2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.geometry import rotation
+from dem_cli.core.geometry import rotation
 
 RNG = np.random.default_rng(5)
 PLANE, SPACE = RNG.normal(size=(7, 2)), RNG.normal(size=(7, 3))

@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull, QhullError
 
-from dem_cli.geometry import surface_pieces
+from dem_cli.core.geometry import surface_pieces
 
 COORDINATE = st.floats(-1.0, 1.0).map(lambda x: round(x, 3))
 POINTS = st.lists(st.tuples(COORDINATE, COORDINATE), min_size=3, max_size=8, unique=True)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.geometry import parts, polygon, spatial_parts
-from dem_cli.geometry.compounds import covered_faces, inner_edges
-from dem_cli.geometry.polyhedron import box, prism
-from dem_cli.geometry.solids import face_areas
-from dem_cli.geometry.topology import topology_of_polygons, topology_of_polyhedra
+from dem_cli.core.geometry import parts, polygon, spatial_parts
+from dem_cli.core.geometry.compounds import covered_faces, inner_edges
+from dem_cli.core.geometry.polyhedron import box, prism
+from dem_cli.core.geometry.solids import face_areas
+from dem_cli.core.geometry.topology import topology_of_polygons, topology_of_polyhedra
 
 STARTS = np.array([0, 3, 7, 12])
 

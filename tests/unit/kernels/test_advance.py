@@ -7,9 +7,9 @@ import pytest
 from engine import block, highest_frequency, real_masses, rectangle, running_wall, simulation, steps, tables
 from reference import value
 
-from dem_cli.engine import measures
-from dem_cli.engine.loops import compiled_advance
-from dem_cli.kernels import records as slot
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.loops import compiled_advance
+from dem_cli.core.kernels import records as slot
 
 KN, G = 1.0e9, 9.81
 BOOK = "classical_benchmarks"

@@ -16,16 +16,16 @@ import pytest
 from numba.core.registry import cpu_target
 
 import dem_cli
-from dem_cli.engine.loops import compiled_advance, compiled_shake
-from dem_cli.kernels.compilation.cache_folder import _place
-from dem_cli.kernels.compilation.machine_code import KernelCache
-from dem_cli.kernels.jit import CompiledKernel, kernel
-from dem_cli.laws.registry import LAWS
+from dem_cli.core.engine.loops import compiled_advance, compiled_shake
+from dem_cli.core.kernels.compilation.cache_folder import _place
+from dem_cli.core.kernels.compilation.machine_code import KernelCache
+from dem_cli.core.kernels.jit import CompiledKernel, kernel
+from dem_cli.core.laws.registry import LAWS
 
 PROGRAM = """
 import os
-from dem_cli.kernels.compilation.machine_code import cache_folder
-from dem_cli.kernels.planar_geometry import measure  # any kernel
+from dem_cli.core.kernels.compilation.machine_code import cache_folder
+from dem_cli.core.kernels.planar_geometry import measure  # any kernel
 import numba
 os.environ["NUMBA_NUM_THREADS"] = "1"  # as `dem bench` does
 numba.config.reload_config()
@@ -64,8 +64,8 @@ def test_loops_come_from_the_cache(dimension):
 
 KEYS = """
 from numba.core.registry import cpu_target
-from dem_cli.engine.loops import compiled_advance, compiled_shake
-from dem_cli.laws.registry import LAWS
+from dem_cli.core.engine.loops import compiled_advance, compiled_shake
+from dem_cli.core.laws.registry import LAWS
 law, codegen = LAWS["coulomb"], cpu_target.target_context.codegen()
 for loop in (compiled_advance("fixed", law), compiled_shake(law, False, True, 3)):
     print(loop._cache._index_key((), codegen)[-1])

@@ -7,14 +7,14 @@ import pytest
 from engine import block, rectangle, running_wall, simulation, tables
 from synthetic.twins import LIKE, LIKE_ROTATION, PLANAR, in_space, twin
 
-from dem_cli.contact.joints import empty_contacts
-from dem_cli.engine.loops import compiled_advance
-from dem_cli.engine.simulation import Simulation
-from dem_cli.kernels import records as slot
-from dem_cli.kernels.contact_forces import make_contact_forces
-from dem_cli.kernels.fixed_joints import FixedJoints
-from dem_cli.kernels.jit import kernel
-from dem_cli.laws.registry import LAWS
+from dem_cli.core.contact.joints import empty_contacts
+from dem_cli.core.engine.loops import compiled_advance
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.kernels.contact_forces import make_contact_forces
+from dem_cli.core.kernels.fixed_joints import FixedJoints
+from dem_cli.core.kernels.jit import kernel
+from dem_cli.core.laws.registry import LAWS
 
 DEPTH = 0.08  # of prisms [m]
 

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from dem_cli.kernels.dashpots import OPEN, SLIPS, STARTS, STICKS
-from dem_cli.kernels.spatial_dashpots import LEAST, WIDTH, given_up, meet, put_gains, resist
+from dem_cli.core.kernels.dashpots import OPEN, SLIPS, STARTS, STICKS
+from dem_cli.core.kernels.spatial_dashpots import LEAST, WIDTH, given_up, meet, put_gains, resist
 
 RANDOM = np.random.default_rng(5)
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from engine import block, scene, tables
 
-from dem_cli.engine.dynamic import DynamicSimulation, no_watch
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.viscous import Damping
-from dem_cli.kernels import records as slot
+from dem_cli.core.engine.dynamic import DynamicSimulation, no_watch
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.viscous import Damping
+from dem_cli.core.kernels import records as slot
 
 SIDE, HEIGHT, DT = 0.6, 0.4, 4e-5
 LOWER, UPPER = 1, 2

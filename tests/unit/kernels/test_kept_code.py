@@ -9,12 +9,12 @@ from copy import deepcopy
 import numpy as np
 import pytest
 
-from dem_cli.kernels.compilation import cache_folder, kept_code
-from dem_cli.kernels.compilation.kept_code import kept_kernel, may_be_kept
-from dem_cli.kernels.compilation.kinds import OtherTypes, kind_of
-from dem_cli.kernels.jit import kernel
-from dem_cli.kernels.records import Loads
-from dem_cli.kernels.vec import in_a_row, shaped_as
+from dem_cli.core.kernels.compilation import cache_folder, kept_code
+from dem_cli.core.kernels.compilation.kept_code import kept_kernel, may_be_kept
+from dem_cli.core.kernels.compilation.kinds import OtherTypes, kind_of
+from dem_cli.core.kernels.jit import kernel
+from dem_cli.core.kernels.records import Loads
+from dem_cli.core.kernels.vec import in_a_row, shaped_as
 
 pytestmark = pytest.mark.skipif(not may_be_kept(), reason="code is kept on Linux and x86-64 alone")
 
@@ -113,7 +113,7 @@ def test_options_of_numba_are_for_numba(folder, monkeypatch):
 def test_numba_says_the_same_of_types():
     from numba import typeof
 
-    from dem_cli.kernels.compilation.entries import kind_of_type
+    from dem_cli.core.kernels.compilation.entries import kind_of_type
 
     read_only = np.zeros(2, np.int8)
     read_only.flags.writeable = False

@@ -6,7 +6,7 @@ import pytest
 from casefiles import CASES
 from engine import simulation
 
-from dem_cli.kernels.tiles.joint_tiles import JointTiles
+from dem_cli.core.kernels.tiles.joint_tiles import JointTiles
 
 NAMES = ("wall_21", "sliding_block", "arch_21", "tilted_block")
 

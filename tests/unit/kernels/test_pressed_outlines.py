@@ -9,9 +9,9 @@ from engine import tables as plane
 from scipy.spatial.transform import Rotation
 from studies.space.structures import box, tables
 
-from dem_cli.engine.placement import moves
-from dem_cli.engine.simulation import Simulation
-from dem_cli.geometry.rotation import quaternions
+from dem_cli.core.engine.placement import moves
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.geometry.rotation import quaternions
 
 KN, DEEP, MU = 1e9, 1e-5, 0.6
 

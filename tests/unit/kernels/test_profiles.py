@@ -10,12 +10,12 @@ from engine import block, rectangle, scene, simulation, solve, steps, tables
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from dem_cli.contact.layout import PointLayout
-from dem_cli.engine import measures
-from dem_cli.engine import simulation as engine
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.kernels import records as slot
-from dem_cli.kernels.planar_geometry import BLEND
+from dem_cli.core.contact.layout import PointLayout
+from dem_cli.core.engine import measures
+from dem_cli.core.engine import simulation as engine
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.kernels.planar_geometry import BLEND
 
 APERTURE, SIDES = 0.01, 5
 

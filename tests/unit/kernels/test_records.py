@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.kernels.compilation.references import Record
-from dem_cli.kernels.jit import kernel
-from dem_cli.kernels.records import Ground, Watch
+from dem_cli.core.kernels.compilation.references import Record
+from dem_cli.core.kernels.jit import kernel
+from dem_cli.core.kernels.records import Ground, Watch
 
 
 @kernel

@@ -8,10 +8,10 @@ from engine import block, real_masses, rectangle, simulation, steps, tables
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem_cli.contact.layout import PointLayout
-from dem_cli.engine import simulation as engine
-from dem_cli.engine.simulation import Simulation
-from dem_cli.kernels.planar_geometry import BLEND, FLAT, STEEPER
+from dem_cli.core.contact.layout import PointLayout
+from dem_cli.core.engine import simulation as engine
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.kernels.planar_geometry import BLEND, FLAT, STEEPER
 
 KN, SIDE, WEIGHT = 1e9, 1.0, 2000.0 * 9.81
 DEPTH = WEIGHT / KN  # of a corner that carries the block

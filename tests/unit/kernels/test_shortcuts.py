@@ -11,7 +11,7 @@ from numba.core.compiler import Flags
 from numba.core.errors import TypingError
 from numba.core.registry import cpu_target
 
-from dem_cli.kernels.compilation import shortcuts
+from dem_cli.core.kernels.compilation import shortcuts
 
 NUMBERS = (types.int64, types.uint64, types.float64, types.boolean, types.literal(2), types.float64[:, ::1])
 

@@ -12,8 +12,8 @@ import pytest
 from engine import simulation, steps
 from scipy.spatial.transform import Rotation
 
-from dem_cli.engine.placement import moves
-from dem_cli.geometry.rotation import quaternions
+from dem_cli.core.engine.placement import moves
+from dem_cli.core.geometry.rotation import quaternions
 
 DEEP = 1e-4  # m that the upper block is pressed into the lower one
 UP = np.array([0.0, 0.0, 1.0])

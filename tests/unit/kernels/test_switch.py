@@ -16,14 +16,14 @@ from casefiles import CASES
 from parsed import nodes
 
 import dem_cli
-from dem_cli.kernels import jit
-from dem_cli.kernels.compilation import callees, machine_code, private_names, shortcuts
-from dem_cli.kernels.compilation.door import Door
-from dem_cli.kernels.compilation.kept_code import may_be_kept
-from dem_cli.kernels.compilation.numba_setup import set_up_numba
-from dem_cli.kernels.compilation.plain_numba import PlainKernel
-from dem_cli.kernels.compilation.private_names import PRIVATE_NAMES, TRIED, check_private_names
-from dem_cli.kernels.compilation.switch import SWITCH, Surprise, Switch
+from dem_cli.core.kernels import jit
+from dem_cli.core.kernels.compilation import callees, machine_code, private_names, shortcuts
+from dem_cli.core.kernels.compilation.door import Door
+from dem_cli.core.kernels.compilation.kept_code import may_be_kept
+from dem_cli.core.kernels.compilation.numba_setup import set_up_numba
+from dem_cli.core.kernels.compilation.plain_numba import PlainKernel
+from dem_cli.core.kernels.compilation.private_names import PRIVATE_NAMES, TRIED, check_private_names
+from dem_cli.core.kernels.compilation.switch import SWITCH, Surprise, Switch
 
 FOLDER = Path(private_names.__file__).parent
 PACKAGE = Path(dem_cli.__file__).parent
@@ -273,7 +273,7 @@ def test_what_cannot_be_kept_is_said(door, monkeypatch):
     assert pair(1.0) == (1.0, 1.0)
     assert [said.rpartition(": ")[2] for said in SWITCH.said()] == ["it returns UniTuple(float64 x 2)"]
     assert SWITCH.own_way()
-    pair.py_func.__module__ = "dem_cli.kernels.pair"  # a kernel of the package
+    pair.py_func.__module__ = "dem_cli.core.kernels.pair"  # a kernel of the package
     monkeypatch.setenv("DEM_STRICT_KERNELS", "1")
     with pytest.raises(Surprise, match="it returns UniTuple"):
         jit.kernel(pair.py_func)(2)
@@ -281,10 +281,10 @@ def test_what_cannot_be_kept_is_said(door, monkeypatch):
 
 BUILT_IN = """
 import numpy as np
-from dem_cli.kernels.jit import kernel
-from dem_cli.kernels.tiles.lanes import lowest_bit
-from dem_cli.kernels.tiles.team import N_TEAM, join, new_team, wait
-from dem_cli.kernels.vec import in_a_row, shaped_as
+from dem_cli.core.kernels.jit import kernel
+from dem_cli.core.kernels.tiles.lanes import lowest_bit
+from dem_cli.core.kernels.tiles.team import N_TEAM, join, new_team, wait
+from dem_cli.core.kernels.vec import in_a_row, shaped_as
 
 @kernel
 def all_of_them(rows, team, bits, out):

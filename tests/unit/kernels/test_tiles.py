@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from engine import running_wall, simulation, tables
 
-from dem_cli.bench.cases import KNOWN_STRUCTURES, prisms
-from dem_cli.bench.kernels import simulation as wall_in_space
-from dem_cli.engine.loops import compiled_advance
-from dem_cli.engine.simulation import Simulation
-from dem_cli.engine.threads.crew import called_by_all, crew_of
-from dem_cli.kernels import records as slot
-from dem_cli.output.resume.kept_objects import decoded, encoded
+from dem_cli.app.bench.cases import KNOWN_STRUCTURES, prisms
+from dem_cli.app.bench.kernels import simulation as wall_in_space
+from dem_cli.core.engine.loops import compiled_advance
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.engine.threads.crew import called_by_all, crew_of
+from dem_cli.core.kernels import records as slot
+from dem_cli.results.output.resume.kept_objects import decoded, encoded
 
 WAYS = {"fire": slot.FIRE, "hold": slot.HOLD_LOAD, "creep": slot.CREEP, "guided": slot.GUIDED}
 

@@ -6,7 +6,7 @@ import numba
 import numpy as np
 import pytest
 
-from dem_cli.kernels import vec
+from dem_cli.core.kernels import vec
 
 RNG = np.random.default_rng(5)
 ROWS = RNG.normal(size=(4, 18))

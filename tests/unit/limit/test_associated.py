@@ -11,15 +11,15 @@ from engine import MU, block, mirrored, moved, rectangle, running_wall, scene, t
 from engine.limits import on_a_base, renumbered, rotated, solved, tower
 from oracle.limit_lp import limit_load as oracle_load
 
-from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.laws.coulomb import COULOMB
+from dem_cli.core.laws.envelope import envelope
+from dem_cli.core.limit import associated
+from dem_cli.core.limit.analysis import limit_loads, start_structure
+from dem_cli.core.limit.associated import FALLS, GIVEN_UP, LOCKED, OK
+from dem_cli.core.limit.cone import friction_of
+from dem_cli.core.limit.settings import DEFAULT_LIMIT
 from dem_cli.errors import UsageError
-from dem_cli.laws.coulomb import COULOMB
-from dem_cli.laws.envelope import envelope
-from dem_cli.limit import associated
-from dem_cli.limit.analysis import limit_loads, start_structure
-from dem_cli.limit.associated import FALLS, GIVEN_UP, LOCKED, OK
-from dem_cli.limit.cone import friction_of
-from dem_cli.limit.settings import DEFAULT_LIMIT
 
 ACCEPTED = DEFAULT_LIMIT.associated
 
@@ -220,7 +220,7 @@ def test_a_solver_that_stops_early_is_not_believed(monkeypatch):
 
 def test_a_false_proof_is_not_believed(monkeypatch):
     """A solver that says 'infeasible' of a wall that stands is not repeated."""
-    from dem_cli.limit.program import IMPOSSIBLE
+    from dem_cli.core.limit.program import IMPOSSIBLE
 
     honest = associated.largest_load
     monkeypatch.setattr(

@@ -9,12 +9,12 @@ import pytest
 from engine import block, rectangle, running_wall, scene, tables
 from engine.limits import on_a_base, tower
 
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.limit import fronts
-from dem_cli.limit.analysis import start_structure
-from dem_cli.limit.associated import FALLS, LOCKED, OK, limit_load
-from dem_cli.limit.cone import envelope_of
-from dem_cli.limit.settings import DEFAULT_LIMIT
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.limit import fronts
+from dem_cli.core.limit.analysis import start_structure
+from dem_cli.core.limit.associated import FALLS, LOCKED, OK, limit_load
+from dem_cli.core.limit.cone import envelope_of
+from dem_cli.core.limit.settings import DEFAULT_LIMIT
 
 CLARABEL, ON_FRONTS = DEFAULT_LIMIT.associated, replace(DEFAULT_LIMIT.associated, on_fronts=0)
 

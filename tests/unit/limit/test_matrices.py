@@ -7,12 +7,12 @@ import pytest
 from casefiles import CASES
 from engine import block, rectangle, scene, simulation, tables, turned
 
-from dem_cli.contact.start import bodies_at_rest, joints_of_start
-from dem_cli.engine import measures
-from dem_cli.engine.properties import joint_properties
-from dem_cli.kernels import records as slot
-from dem_cli.limit.matrices import structure_of
-from dem_cli.model.scales import smallest_edge
+from dem_cli.core.contact.start import bodies_at_rest, joints_of_start
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.properties import joint_properties
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.limit.matrices import structure_of
+from dem_cli.core.model.scales import smallest_edge
 
 ARCH = CASES / "verification" / "arch_21.toml"
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dem_cli.limit.newton_matrix import NewtonMatrix, PointRows
-from dem_cli.limit.settings import PathSettings
+from dem_cli.core.limit.newton_matrix import NewtonMatrix, PointRows
+from dem_cli.core.limit.settings import PathSettings
 
 SETTINGS = PathSettings()
 TANGENTS = {2: ((1, 1), (1, 0)), 3: ((1, 1), (2, 2), (1, 2), (1, 0), (2, 0))}

@@ -10,16 +10,16 @@ import pytest
 from engine import block, rectangle, scene
 from engine.limits import mirrored_model, on_a_base, rotated, tower
 
-from dem_cli.cli.words.limit_loads import limit_rows
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.limit.analysis import limit_loads, start_structure
-from dem_cli.limit.cone import friction_of
-from dem_cli.limit.elastic import Elastic
-from dem_cli.limit.interior import Increment
-from dem_cli.limit.path import FALLS, OK, UNFINISHED, at_rest, trace
-from dem_cli.limit.path import Path as LoadPath
-from dem_cli.limit.settings import DEFAULT_LIMIT
-from dem_cli.limit.slips import apart
+from dem_cli.app.cli.words.limit_loads import limit_rows
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.limit.analysis import limit_loads, start_structure
+from dem_cli.core.limit.cone import friction_of
+from dem_cli.core.limit.elastic import Elastic
+from dem_cli.core.limit.interior import Increment
+from dem_cli.core.limit.path import FALLS, OK, UNFINISHED, at_rest, trace
+from dem_cli.core.limit.path import Path as LoadPath
+from dem_cli.core.limit.settings import DEFAULT_LIMIT
+from dem_cli.core.limit.slips import apart
 
 CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
 EXACT = {  # closed forms and published exact loads

@@ -10,16 +10,16 @@ from studies.space.structures import box as block
 from studies.space.structures import prism, tables
 from synthetic.solids import Face, Solid, box, extruded, joints_of, model_of, panel, prism_on, turned, wedge
 
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.geometry.polygon import properties
-from dem_cli.limit.analysis import limit_loads, start_structure
-from dem_cli.limit.cone import friction_of
-from dem_cli.limit.elastic import Elastic, cones_of
-from dem_cli.limit.matrices import Structure, structure_of
-from dem_cli.limit.path import OK, Path, _advance, at_rest, compliance, trace
-from dem_cli.limit.settings import PathSettings
-from dem_cli.limit.slip_cones import SlipCones
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.geometry.polygon import properties
+from dem_cli.core.limit.analysis import limit_loads, start_structure
+from dem_cli.core.limit.cone import friction_of
+from dem_cli.core.limit.elastic import Elastic, cones_of
+from dem_cli.core.limit.matrices import Structure, structure_of
+from dem_cli.core.limit.path import OK, Path, _advance, at_rest, compliance, trace
+from dem_cli.core.limit.settings import PathSettings
+from dem_cli.core.limit.slip_cones import SlipCones
+from dem_cli.masonry.assembly.solver_request import solver_request
 
 NEAR = 1e-6  # relative, of loads: the path ends where they grow no more
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from dem_cli.limit.path import is_plateau
-from dem_cli.limit.settings import PathSettings
+from dem_cli.core.limit.path import is_plateau
+from dem_cli.core.limit.settings import PathSettings
 
 SETTINGS = PathSettings()
 

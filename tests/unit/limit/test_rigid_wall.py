@@ -9,7 +9,7 @@ from engine import block, rectangle, scene, tables
 from reference import book, value
 
 from dem_cli.analyses.hand_check import hand_check
-from dem_cli.limit.rigid_wall import TopLoad, above_the_cut, split_load
+from dem_cli.core.limit.rigid_wall import TopLoad, above_the_cut, split_load
 
 BOOK = "thesis_appendix_b"
 WIDTH, HEIGHT = (book(BOOK)["geometry"][key] for key in ("width_m", "height_m"))

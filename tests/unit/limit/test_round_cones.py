@@ -17,14 +17,14 @@ from oracle.strong_joints import Points, toppling_load
 from scipy.optimize import linprog
 from synthetic.solids import Face, Solid, box, extruded, joints_of, model_of, panel, prism_on, turned, wedge
 
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.laws.envelope import Envelope, envelope, frictional
-from dem_cli.limit.analysis import start_structure
-from dem_cli.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load
-from dem_cli.limit.cone import envelope_of
-from dem_cli.limit.matrices import Structure, structure_of
-from dem_cli.limit.program import factorised_by, program_of
-from dem_cli.limit.settings import DEFAULT_LIMIT
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.laws.envelope import Envelope, envelope, frictional
+from dem_cli.core.limit.analysis import start_structure
+from dem_cli.core.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load
+from dem_cli.core.limit.cone import envelope_of
+from dem_cli.core.limit.matrices import Structure, structure_of
+from dem_cli.core.limit.program import factorised_by, program_of
+from dem_cli.core.limit.settings import DEFAULT_LIMIT
 
 NEAR = 1e-6  # relative
 WIDTH, DEPTH, HEIGHT = 0.3, 0.5, 1.0  # of a block that topples; of weight one

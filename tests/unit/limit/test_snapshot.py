@@ -7,8 +7,8 @@ import pytest
 from engine import block, rectangle, running_wall, tables
 from engine.limits import on_a_base, solved
 
-from dem_cli.limit.snapshot import SHOWN_MOTION, Collapse, frame
-from dem_cli.records.frames import STATES
+from dem_cli.core.limit.snapshot import SHOWN_MOTION, Collapse, frame
+from dem_cli.core.records.frames import STATES
 
 
 def snapshot(found, tilting: bool = False):

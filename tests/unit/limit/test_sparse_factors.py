@@ -5,8 +5,8 @@ import pytest
 from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
 
-from dem_cli.limit import sparse_factors
-from dem_cli.limit.sparse_factors import factors_of
+from dem_cli.core.limit import sparse_factors
+from dem_cli.core.limit.sparse_factors import factors_of
 
 
 def grid(n):

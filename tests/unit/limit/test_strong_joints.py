@@ -8,9 +8,9 @@ from engine import block, rectangle, running_wall, tables
 from engine.limits import on_a_base, solved
 from oracle.strong_joints import Points, largest_load, stress_block_load, toppling_load
 
-from dem_cli.contact.layout import lobatto
+from dem_cli.core.contact.layout import lobatto
+from dem_cli.core.limit.associated import LOCKED, OK
 from dem_cli.errors import UsageError
-from dem_cli.limit.associated import LOCKED, OK
 
 NEAR = 5e-6  # relative; bounds are accepted up to 1e-4 apart, and lie closer in all of these
 WEIGHT = 2000.0 * 9.81  # of a cubic metre

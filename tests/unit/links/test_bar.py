@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from dem_cli.geometry.rotation import quaternions, turned_further, turns_of
-from dem_cli.kernels.jit import kernel
-from dem_cli.links.bar import BAR, bars
-from dem_cli.links.drawn_bar import FINE, BarPiece, BarProfile, DrawnBar, Reinforcement
-from dem_cli.links.link import FORCE, PLASTIC, STRETCH, all_forces
-from dem_cli.tables.declared import table_of
+from dem_cli.case.tables.declared import table_of
+from dem_cli.core.geometry.rotation import quaternions, turned_further, turns_of
+from dem_cli.core.kernels.jit import kernel
+from dem_cli.core.links.bar import BAR, bars
+from dem_cli.core.links.drawn_bar import FINE, BarPiece, BarProfile, DrawnBar, Reinforcement
+from dem_cli.core.links.link import FORCE, PLASTIC, STRETCH, all_forces
 
 EA, KB, SB, LONG = 2.26e7, 1e9, 4e4, 0.6
 MU = math.sqrt(KB / EA)

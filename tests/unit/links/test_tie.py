@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from dem_cli.geometry.rotation import quaternions, turned_further, turns_of
-from dem_cli.kernels.jit import kernel
-from dem_cli.links.link import FIXED_POINT, FORCE, PLASTIC, LinkEnds, all_forces
-from dem_cli.links.matrices import elastic_energy_of_links
-from dem_cli.links.tie import TIE, Tie, ties
-from dem_cli.tables.declared import table_of
+from dem_cli.case.tables.declared import table_of
+from dem_cli.core.geometry.rotation import quaternions, turned_further, turns_of
+from dem_cli.core.kernels.jit import kernel
+from dem_cli.core.links.link import FIXED_POINT, FORCE, PLASTIC, LinkEnds, all_forces
+from dem_cli.core.links.matrices import elastic_energy_of_links
+from dem_cli.core.links.tie import TIE, Tie, ties
 
 CENTROIDS = {2: np.array([[0.0, 0.0], [2.0, 1.0]]), 3: np.array([[0.0, 0.0, 0.2], [2.0, 1.0, -0.4]])}
 POINTS = {2: [[0.3, 0.2], [-0.4, 0.1]], 3: [[0.3, 0.2, -0.1], [-0.4, 0.1, 0.25]]}

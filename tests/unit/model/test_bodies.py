@@ -7,10 +7,10 @@ import pytest
 from oracle.shapes import running_wall
 from synthetic.spatial import extruded, spatial_model
 
-from dem_cli.geometry.polyhedron import box
-from dem_cli.model.bodies import bodies_of
-from dem_cli.model.places import block_at
-from dem_cli.model.scales import stiffness_scale
+from dem_cli.core.geometry.polyhedron import box
+from dem_cli.core.model.bodies import bodies_of
+from dem_cli.core.model.places import block_at
+from dem_cli.core.model.scales import stiffness_scale
 
 
 def test_prisms_weigh_what_their_polygons_do():

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from engine import block, rectangle, scene, tables
 
-from dem_cli.contact.geometry import GEOMETRY, geometry_of
+from dem_cli.core.contact.geometry import GEOMETRY, geometry_of
+from dem_cli.core.model.scales import smallest_edge
 from dem_cli.errors import UsageError
-from dem_cli.model.scales import smallest_edge
 
 ELL = {"id": "ell", "parts": [rectangle(0, 0, 1, 3), rectangle(1, 0, 2.5, 1)], "fixed": True}
 

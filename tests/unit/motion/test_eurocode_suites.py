@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.motion.eurocode import eurocode
-from dem_cli.motion.eurocode_suites import meets, verdict
-from dem_cli.motion.motion import Motion
-from dem_cli.motion.pulses import SineWave
-from dem_cli.motion.synthetic import suite
-from dem_cli.tables.base_motion import ArtificialTable
+from dem_cli.case.tables.base_motion import ArtificialTable
+from dem_cli.core.motion.eurocode import eurocode
+from dem_cli.core.motion.eurocode_suites import meets, verdict
+from dem_cli.core.motion.motion import Motion
+from dem_cli.core.motion.pulses import SineWave
+from dem_cli.core.motion.synthetic import suite
 
 T1 = 0.5  # s
 

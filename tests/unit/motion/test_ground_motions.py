@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dem_cli.api import build_model, load_case, make_case_model
-from dem_cli.assembly.ground_motions import motions_of, suites_of
+from dem_cli.app.api import build_model, load_case, make_case_model
 from dem_cli.case.reader import CaseSource, LoadedCase, parse_toml, validate
 from dem_cli.case.writer import case_text
 from dem_cli.errors import CaseError
+from dem_cli.masonry.assembly.ground_motions import motions_of, suites_of
 
 CASE = """
 [materials.stone]

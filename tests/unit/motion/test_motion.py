@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from dem_cli.motion.motion import Motion, moving_at_the_end
-from dem_cli.motion.pulses import RectangularPulses, RickerWavelet, SineWave, impulse
-from dem_cli.motion.record import record
+from dem_cli.core.motion.motion import Motion, moving_at_the_end
+from dem_cli.core.motion.pulses import RectangularPulses, RickerWavelet, SineWave, impulse
+from dem_cli.core.motion.record import record
 
 SHAPES = {
     "sine": SineWave(3.0, 1.5, 1 / 1.5),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PPoly
 
-from dem_cli.motion.piecewise_polynomial import AT_ONCE, PiecewisePolynomial
+from dem_cli.core.motion.piecewise_polynomial import AT_ONCE, PiecewisePolynomial
 
 
 @pytest.mark.parametrize("n_pieces", [1, 2, 60])

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dem_cli.motion.record import record
-from dem_cli.motion.record_text import RecordError
+from dem_cli.core.motion.record import record
+from dem_cli.core.motion.record_text import RecordError
 
 steps = st.lists(st.floats(1e-3, 1.0), min_size=1, max_size=30)
 

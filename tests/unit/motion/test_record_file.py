@@ -7,8 +7,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from dem_cli.motion.record_file import read_series
-from dem_cli.motion.record_text import RecordError
+from dem_cli.core.motion.record_file import read_series
+from dem_cli.core.motion.record_text import RecordError
 
 numbers = st.floats(-1e6, 1e6, allow_nan=False)
 FORMS = {

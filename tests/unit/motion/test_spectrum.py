@@ -10,9 +10,9 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.signal import lfilter, lsim
 
-from dem_cli.motion.eurocode import SOILS, damping_correction, eurocode, listed
-from dem_cli.motion.pulses import SineWave
-from dem_cli.motion.spectrum import (
+from dem_cli.core.motion.eurocode import SOILS, damping_correction, eurocode, listed
+from dem_cli.core.motion.pulses import SineWave
+from dem_cli.core.motion.spectrum import (
     crest,
     exponential,
     oscillator,

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.motion.intensity_measures import fit
-from dem_cli.motion.motion import Motion
-from dem_cli.motion.synthetic import envelope, power_spectrum, suite
-from dem_cli.tables.base_motion import ArtificialTable
+from dem_cli.case.tables.base_motion import ArtificialTable
+from dem_cli.core.motion.intensity_measures import fit
+from dem_cli.core.motion.motion import Motion
+from dem_cli.core.motion.synthetic import envelope, power_spectrum, suite
 
 
 def table(**keys):

@@ -8,7 +8,7 @@ import tomli_w
 from engine import block, rectangle
 
 import dem_cli
-from dem_cli.api import build_model, load_case
+from dem_cli.app.api import build_model, load_case
 
 NAMES = ["c-2", "c-1", "beam", "ground", "right", "left"]  # a column of its own, and blocks from the top down
 SHAPES = {

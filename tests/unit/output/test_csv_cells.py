@@ -7,9 +7,9 @@ import io
 
 import pytest
 
-from dem_cli.output.csv_cells import cell, text_of
-from dem_cli.output.run_tables import write_runs
-from dem_cli.records.history_rows import RunRow
+from dem_cli.core.records.history_rows import RunRow
+from dem_cli.results.output.csv_cells import cell, text_of
+from dem_cli.results.output.run_tables import write_runs
 
 
 @pytest.mark.parametrize("name", ["=1+1", "+20 %", "-cmd|' /C calc'!A0", "@SUM(A1)", "=", "−5 (a true minus)"])

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from dem_cli.api import load_case
+from dem_cli.app.api import load_case
+from dem_cli.app.cli.words.reference import one_line
+from dem_cli.app.verify.records import record
+from dem_cli.app.verify.verdict_words import allowed, expected, found, off, share
 from dem_cli.case.reference import Reference
-from dem_cli.cli.words.reference import one_line
 from dem_cli.errors import CaseError
-from dem_cli.output.reference import error_of, in_summary, verdicts
-from dem_cli.verify.records import record
-from dem_cli.verify.verdict_words import allowed, expected, found, off, share
+from dem_cli.results.output.reference import error_of, in_summary, verdicts
 
 CURVE = {"displacements": [0.0, 0.01, 0.03], "loads": [0.0, 100.0, 100.0]}
 SUMMARY = {"status": "ok", "kind": "pushover", "capacity_curve": CURVE}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from dem_cli.output.equilibrium_monitors import EquilibriumMonitors
-from dem_cli.records.history_rows import Energy, HistoryRow
+from dem_cli.core.records.history_rows import Energy, HistoryRow
+from dem_cli.results.output.equilibrium_monitors import EquilibriumMonitors
 
 
 def row(stage, load, *values):

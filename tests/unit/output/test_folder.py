@@ -8,8 +8,8 @@ import re
 import pytest
 
 from dem_cli.errors import OutputError, UsageError
-from dem_cli.output.folder import OutputFolder, write_error
-from dem_cli.output.summary import write_summary
+from dem_cli.results.output.folder import OutputFolder, write_error
+from dem_cli.results.output.summary import write_summary
 
 OURS = {"title": "x", "kind": "pushover", "version": "0", "status": "ok"}
 

@@ -7,7 +7,7 @@ import io
 import h5py
 import numpy as np
 
-from dem_cli.output.growing_dataset import GrowingGroup
+from dem_cli.results.output.growing_dataset import GrowingGroup
 
 
 def test_rows_wait_as_they_were_appended():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dem_cli.errors import UsageError
-from dem_cli.output.resume.journal import Journal
+from dem_cli.results.output.resume.journal import Journal
 
 WHAT = {"the case": "a", "the program": "b"}
 

@@ -14,9 +14,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from dem_cli.output.resume.kept_values import Damaged, NotKept, packed, unpacked
-from dem_cli.records.history_rows import Energy, HistoryRow
-from dem_cli.statics.equilibrium import Verdict
+from dem_cli.core.records.history_rows import Energy, HistoryRow
+from dem_cli.core.statics.equilibrium import Verdict
+from dem_cli.results.output.resume.kept_values import Damaged, NotKept, packed, unpacked
 
 DTYPES = ["bool", "i1", "u1", "i4", "u4", "i8", "u8", "f4", "f8", "c16"]
 ENERGY = Energy(*np.arange(7.0))
@@ -147,7 +147,7 @@ HOSTILE = {
     "a list as a kind": bytes_of([["list"]]),
     "a module": bytes_of(["object", "os", "system", 1]),
     "an unknown record": bytes_of(["record", "CompletedProcess", "id", 0]),
-    "a record by its place": bytes_of(["record", "dem_cli.records.history_rows.Energy", *RECORD]),
+    "a record by its place": bytes_of(["record", "dem_cli.core.records.history_rows.Energy", *RECORD]),
     "a name within": bytes_of(["object", "Verdict.__init__", "state", "x"]),
     "a list as a name": bytes_of(["record", ["list"], *RECORD]),
     "a record that is too short": bytes_of(["record", "Energy", 1.0]),

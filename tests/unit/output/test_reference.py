@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from dem_cli.app.cli.words.reference import one_line
 from dem_cli.case.reference import Reference
-from dem_cli.cli.words.reference import one_line
-from dem_cli.output.reference import as_declared, error, from_summary, in_summary, verdicts
-from dem_cli.output.summary import exit_code
+from dem_cli.results.output.reference import as_declared, error, from_summary, in_summary, verdicts
+from dem_cli.results.output.summary import exit_code
 
 SUMMARY = {
     "status": "ok",

@@ -10,10 +10,10 @@ import pytest
 from synthetic import wall_model, wall_summary
 from synthetic.shaking import shaken, write_shaking
 
-from dem_cli.output.paraview.vtk import export_pvd
-from dem_cli.output.reader import read
-from dem_cli.output.store import ResultWriter
-from dem_cli.records.history_rows import Samples
+from dem_cli.core.records.history_rows import Samples
+from dem_cli.results.output.paraview.vtk import export_pvd
+from dem_cli.results.output.reader import read
+from dem_cli.results.output.store import ResultWriter
 
 NAMES, QUANTITIES = ("top, left", "hinge"), ("acceleration", "opening")
 
@@ -78,7 +78,7 @@ def test_peaks_keep_their_sign_over_all_stretches(tmp_path):
 
 
 def test_a_killed_run_has_all_up_to_the_last_flush(tmp_path, monkeypatch):
-    monkeypatch.setattr("dem_cli.output.store._BUFFERED_SAMPLES", 1024)
+    monkeypatch.setattr("dem_cli.results.output.store._BUFFERED_SAMPLES", 1024)
     writer = writer_in(tmp_path)
     for samples in stretches():
         writer.samples(samples)

@@ -10,15 +10,15 @@ from synthetic.solid_runs import DEPTH, drum, solid_frames, solid_wall, write_so
 from synthetic.spatial import spatial_model
 from synthetic.tumbling import column, write_collapse
 
-from dem_cli.contact.drawn_joints import DrawnJoints
-from dem_cli.geometry.polyhedron import box, hull
-from dem_cli.model.model import WHERE_ASKED_FOR
-from dem_cli.output.joint_table import write_joints
-from dem_cli.output.layout import CONTACTS, FRAMES, MODEL, declared
-from dem_cli.output.paraview.cells import CONVEX_POINT_SET, cells_of, outlines_of_joints
-from dem_cli.output.paraview.vtk import export_pvd, write_geometry
-from dem_cli.output.reader import read
-from dem_cli.records.frames import JointPlaces
+from dem_cli.core.contact.drawn_joints import DrawnJoints
+from dem_cli.core.geometry.polyhedron import box, hull
+from dem_cli.core.model.model import WHERE_ASKED_FOR
+from dem_cli.core.records.frames import JointPlaces
+from dem_cli.results.output.joint_table import write_joints
+from dem_cli.results.output.layout import CONTACTS, FRAMES, MODEL, declared
+from dem_cli.results.output.paraview.cells import CONVEX_POINT_SET, cells_of, outlines_of_joints
+from dem_cli.results.output.paraview.vtk import export_pvd, write_geometry
+from dem_cli.results.output.reader import read
 
 DENSITY = 2000.0  # of the made-up models
 TETRAHEDRON, HEXAHEDRON, WEDGE, PYRAMID, PENTAGONAL, HEXAGONAL = 10, 12, 13, 14, 15, 16

@@ -7,13 +7,13 @@ import os
 import numpy as np
 import pytest
 
+from dem_cli.core.records.ports import NOTHING_KEPT, stage
 from dem_cli.errors import SolverError, UsageError
-from dem_cli.output.folder import locked
-from dem_cli.output.resume.checkpoints import Checkpoints
-from dem_cli.output.resume.kept_objects import all_changing, decoded, encoded
-from dem_cli.output.resume.kept_values import NotKept
-from dem_cli.output.resume.stages import Keeping, KeptStages
-from dem_cli.records.ports import NOTHING_KEPT, stage
+from dem_cli.results.output.folder import locked
+from dem_cli.results.output.resume.checkpoints import Checkpoints
+from dem_cli.results.output.resume.kept_objects import all_changing, decoded, encoded
+from dem_cli.results.output.resume.kept_values import NotKept
+from dem_cli.results.output.resume.stages import Keeping, KeptStages
 
 WHAT = {"the case": "a", "the program": "b"}
 ALL = Keeping(first=0.0, every=0.0, worth=0.0)

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 from synthetic import history_rows, wall_frames, wall_model, wall_summary
 
-from dem_cli.contact.drawn_joints import DrawnJoints
+from dem_cli.core.contact.drawn_joints import DrawnJoints
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import ContactRecord, Frame
+from dem_cli.core.records.history_rows import Energy, Samples
 from dem_cli.errors import UsageError
-from dem_cli.model.model import Model
-from dem_cli.output.reader import read
-from dem_cli.output.store import ResultWriter
-from dem_cli.output.summary import ordered, to_json
-from dem_cli.records.frames import ContactRecord, Frame
-from dem_cli.records.history_rows import Energy, Samples
+from dem_cli.results.output.reader import read
+from dem_cli.results.output.store import ResultWriter
+from dem_cli.results.output.summary import ordered, to_json
 
 
 def write(folder, frames, rows, model, monitors=("top",)):
@@ -118,7 +118,7 @@ def test_readable_while_it_is_written(tmp_path):
 
 
 def test_rows_are_flushed_without_frames_too(tmp_path, monkeypatch):
-    monkeypatch.setattr("dem_cli.output.store._BUFFERED_ROWS", 10)
+    monkeypatch.setattr("dem_cli.results.output.store._BUFFERED_ROWS", 10)
     rows = history_rows(wall_frames(wall_model()))
     writer = ResultWriter(tmp_path, wall_model(), "", {}, ["top"])
     for row in rows[:25]:
@@ -241,7 +241,7 @@ def test_frames_that_waited_are_those_written_one_by_one(tmp_path, monkeypatch, 
     model, frames = prism_frames() if spatial else (wall_model(), wall_frames(wall_model())[:9])
     stored = []
     for name, work in (("together", 10**12), ("alone", 0)):
-        monkeypatch.setattr("dem_cli.output.store._UNFLUSHED", work)
+        monkeypatch.setattr("dem_cli.results.output.store._UNFLUSHED", work)
         folder = tmp_path / name
         folder.mkdir()
         writer = ResultWriter(folder, model, "", {}, (), "time-history")

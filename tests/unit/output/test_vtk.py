@@ -9,11 +9,11 @@ import pytest
 from synthetic import history_rows, wall_frames, wall_model, wall_summary
 
 from dem_cli.errors import OutputError, UsageError
-from dem_cli.output.paraview.fields import block_fields, contact_fields, turning_fields
-from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
-from dem_cli.output.paraview.vtk import export_pvd, write_geometry
-from dem_cli.output.reader import read
-from dem_cli.output.store import ResultWriter
+from dem_cli.results.output.paraview.fields import block_fields, contact_fields, turning_fields
+from dem_cli.results.output.paraview.vertices import placed_vertices, rest_vertices
+from dem_cli.results.output.paraview.vtk import export_pvd, write_geometry
+from dem_cli.results.output.reader import read
+from dem_cli.results.output.store import ResultWriter
 
 vtkIOXML = pytest.importorskip("vtkmodules.vtkIOXML")
 
@@ -91,7 +91,7 @@ def test_export(tmp_path):
 @pytest.mark.parametrize(("there", "error"), [(False, OSError(28, "full")), (True, KeyboardInterrupt())])
 def test_an_export_that_fails_leaves_nothing(tmp_path, monkeypatch, there, error):
     """The folder stayed, with the frames up to the one that failed and no .pvd over them."""
-    from dem_cli.output.paraview import vtk
+    from dem_cli.results.output.paraview import vtk
 
     writer = ResultWriter(tmp_path, wall_model(), "", {}, ["top"])
     for frame in wall_frames(wall_model(), 4):

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from synthetic import history_rows, wall_frames, wall_model, wall_summary
 
-from dem_cli.output.paraview.fields import contact_fields
-from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices, vertex_velocities
-from dem_cli.output.store import ResultWriter
-from dem_cli.records.frames import STAGES
+from dem_cli.core.records.frames import STAGES
+from dem_cli.results.output.paraview.fields import contact_fields
+from dem_cli.results.output.paraview.vertices import placed_vertices, rest_vertices, vertex_velocities
+from dem_cli.results.output.store import ResultWriter
 
 vtkIOHDF = pytest.importorskip("vtkmodules.vtkIOHDF")
 

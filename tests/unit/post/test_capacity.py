@@ -10,8 +10,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from dem_cli.post import capacity
-from dem_cli.post.capacity import _draw_legend, draw_capacity
+from dem_cli.results.post import capacity
+from dem_cli.results.post.capacity import _draw_legend, draw_capacity
 
 
 @pytest.mark.parametrize(("count", "letters"), [(1, 4), (3, 8), (8, 25), (4, 60), (8, 5)])

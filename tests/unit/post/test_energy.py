@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.post.energy import across
+from dem_cli.results.post.energy import across
 
 
 class Kept:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from synthetic import boxes_model, no_contacts, wall_frames, wall_model
 
-from dem_cli.post import frame_measures
-from dem_cli.post.capacity import with_breaks
-from dem_cli.records.frames import ContactRecord, Frame
+from dem_cli.core.records.frames import ContactRecord, Frame
+from dem_cli.results.post import frame_measures
+from dem_cli.results.post.capacity import with_breaks
 
 
 def column_contacts(model, n_drums, forces=(1.0, 3.0), shear=0.5):

@@ -9,11 +9,11 @@ import pytest
 from click.testing import CliRunner
 from synthetic.spatial_case import spatial_case
 
-from dem_cli.assembly.assemble import assemble
-from dem_cli.cli.main import main
-from dem_cli.post.scene.axonometry import AS_BEST
-from dem_cli.post.scene.drawing import drawing_of
-from dem_cli.post.scene.model_picture import DEAD, LIVE, ModelFacts, _forces
+from dem_cli.app.cli.main import main
+from dem_cli.masonry.assembly.assemble import assemble
+from dem_cli.results.post.scene.axonometry import AS_BEST
+from dem_cli.results.post.scene.drawing import drawing_of
+from dem_cli.results.post.scene.model_picture import DEAD, LIVE, ModelFacts, _forces
 
 ROOT = Path(__file__).resolve().parents[3]
 BLOCKS = [
@@ -45,9 +45,9 @@ def test_an_arrow_ends_on_the_line_along_which_its_force_acts():
     ("case", "words"),
     [
         ("cases/verification/wall_21.toml", ()),
-        ("dem_cli/cli/templates/retaining.toml", ()),
-        ("dem_cli/cli/templates/shaken.toml", ()),
-        ("dem_cli/cli/templates/import.toml", ("--azimuth", "200", "--elevation", "40")),
+        ("dem_cli/app/cli/templates/retaining.toml", ()),
+        ("dem_cli/app/cli/templates/shaken.toml", ()),
+        ("dem_cli/app/cli/templates/import.toml", ("--azimuth", "200", "--elevation", "40")),
     ],
 )
 def test_dem_check_draws_any_case(tmp_path, case, words):

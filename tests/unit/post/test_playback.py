@@ -7,10 +7,10 @@ import pytest
 from synthetic import wall_frames, wall_model, wall_summary
 from synthetic.shaking import write_shaking
 
-from dem_cli.output.reader import read
-from dem_cli.output.store import ResultWriter
-from dem_cli.post import playback
-from dem_cli.report.view import MOST_BYTES, view
+from dem_cli.results.output.reader import read
+from dem_cli.results.output.store import ResultWriter
+from dem_cli.results.post import playback
+from dem_cli.results.report.view import MOST_BYTES, view
 
 
 @pytest.mark.parametrize("seed", range(5))

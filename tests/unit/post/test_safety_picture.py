@@ -6,7 +6,7 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
-from dem_cli.post import safety, style
+from dem_cli.results.post import safety, style
 
 
 class Drawn:

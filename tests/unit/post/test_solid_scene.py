@@ -7,14 +7,14 @@ import pytest
 from synthetic.solid_runs import DEPTH, HEIGHT, box_contacts, solid_frames, solid_wall, write_solid_run
 from synthetic.spatial import spatial_model
 
-from dem_cli.geometry.polyhedron import box, hull
-from dem_cli.geometry.rotation import quaternions, rotation_vectors, unturned
-from dem_cli.output.paraview.vertices import placed_vertices, rest_vertices
-from dem_cli.output.reader import read
-from dem_cli.post import frame_measures
-from dem_cli.post.scene.axonometry import Standpoint, axonometry, seen_from
-from dem_cli.post.scene.hidden_surfaces import NOTHING, seen_surface, window_of
-from dem_cli.post.scene.joint_strokes import strokes
+from dem_cli.core.geometry.polyhedron import box, hull
+from dem_cli.core.geometry.rotation import quaternions, rotation_vectors, unturned
+from dem_cli.results.output.paraview.vertices import placed_vertices, rest_vertices
+from dem_cli.results.output.reader import read
+from dem_cli.results.post import frame_measures
+from dem_cli.results.post.scene.axonometry import Standpoint, axonometry, seen_from
+from dem_cli.results.post.scene.hidden_surfaces import NOTHING, seen_surface, window_of
+from dem_cli.results.post.scene.joint_strokes import strokes
 
 FAR, MIDDLE, NEAR = -30.0, 0.0, 30.0
 
@@ -138,7 +138,7 @@ def test_pictures_of_a_run_in_space(tmp_path):
     pytest.importorskip("matplotlib")
     from matplotlib.image import imread
 
-    from dem_cli.post.run_pictures import draw_all
+    from dem_cli.results.post.run_pictures import draw_all
 
     model = solid_wall(3, 2)
     folder = write_solid_run(tmp_path, model, solid_frames(model, 4))
@@ -155,8 +155,8 @@ def test_plot_from_another_side(tmp_path):
     from click.testing import CliRunner
     from matplotlib.image import imread
 
-    from dem_cli.cli.main import main
-    from dem_cli.post import style
+    from dem_cli.app.cli.main import main
+    from dem_cli.results.post import style
 
     def plot(*words):
         return CliRunner().invoke(main, ["plot", str(folder), *words])

@@ -8,11 +8,11 @@ from synthetic import DEPTH, HEIGHT, LENGTH, boxes_model, no_contacts, wall_fram
 from synthetic.solid_runs import drum, solid_frames, solid_wall
 from synthetic.spatial import spatial_model
 
-from dem_cli.geometry.polyhedron import box
-from dem_cli.post import frame_measures, view_box
-from dem_cli.post.scene import joint_strokes
-from dem_cli.records.frames import STATES
-from dem_cli.render import marks, solids
+from dem_cli.core.geometry.polyhedron import box
+from dem_cli.core.records.frames import STATES
+from dem_cli.results.post import frame_measures, view_box
+from dem_cli.results.post.scene import joint_strokes
+from dem_cli.results.render import marks, solids
 
 
 def faces_of(surface):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dem_cli.post.style import figure, headline
+from dem_cli.results.post.style import figure, headline
 
 
 def test_a_title_may_hold_what_the_font_lacks(tmp_path):

@@ -11,13 +11,13 @@ from synthetic.shaking import COLLAPSE, MONITORS, shaken, write_shaking
 from synthetic.tumbling import write_shaken_column
 
 from dem_cli.errors import UsageError
-from dem_cli.output.reader import read
-from dem_cli.output.store import ResultWriter
+from dem_cli.results.output.reader import read
+from dem_cli.results.output.store import ResultWriter
 
 pytest.importorskip("matplotlib")
 from matplotlib.figure import Figure
 
-from dem_cli.post import animation, histories, run_pictures, style, view_box
+from dem_cli.results.post import animation, histories, run_pictures, style, view_box
 
 
 @pytest.fixture
@@ -50,7 +50,7 @@ def test_one_panel_per_quantity_below_the_base(results, tmp_path, figures):
 
 
 def test_the_ledger_over_time_has_every_damping(results, tmp_path, figures):
-    from dem_cli.post.energy import draw_energy
+    from dem_cli.results.post.energy import draw_energy
 
     draw_energy(results, tmp_path / "energy.png")
     axis = figures[0].axes[0]
@@ -62,7 +62,7 @@ def test_the_ledger_over_time_has_every_damping(results, tmp_path, figures):
 
 
 def test_start_collapse_and_end(results):
-    from dem_cli.post.collapse import _panels
+    from dem_cli.results.post.collapse import _panels
 
     panels = _panels(results)
     assert [name for name, _ in panels] == ["start", "collapse", "end"]

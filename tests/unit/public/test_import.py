@@ -9,7 +9,7 @@ import pytest
 
 import dem_cli
 
-HEAVY = ("numpy", "h5py", "numba", "scipy", "pydantic", "click", "rich", "matplotlib", "typing", "dem_cli.api")
+HEAVY = ("numpy", "h5py", "numba", "scipy", "pydantic", "click", "rich", "matplotlib", "typing", "dem_cli.app.api")
 
 
 def modules_after(code: str) -> set[str]:
@@ -27,7 +27,7 @@ def test_importing_loads_nothing_heavy():
 
 
 def test_loading_a_case_needs_no_solver():
-    assert "dem_cli.cli" not in modules_after("import dem_cli; dem_cli.load")
+    assert "dem_cli.app.cli" not in modules_after("import dem_cli; dem_cli.load")
     assert not modules_after("import dem_cli; dem_cli.run") & {"click", "rich", "numba", "matplotlib"}
 
 

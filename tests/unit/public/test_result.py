@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import dem_cli
+from dem_cli.core.records.frames import ContactRecord, Frame
 from dem_cli.errors import UsageError
-from dem_cli.records.frames import ContactRecord, Frame
 
 WALL = {
     "title": "A small wall",

@@ -15,9 +15,9 @@ import pytest
 from click.testing import CliRunner
 
 import dem_cli
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
+from dem_cli.core.records.frames import Frame
 from dem_cli.errors import CaseError, UsageError
-from dem_cli.records.frames import Frame
 
 SAME_IN_FILES = tuple(name for name in Frame._fields if name not in ("contacts", "stresses", "links"))
 COLUMN = {

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from dem_cli.statics.agreement import CREEP, PATH, PATH_OF_START, doubts, histories, load_range, percent, unique
+from dem_cli.core.statics.agreement import CREEP, PATH, PATH_OF_START, doubts, histories, load_range, percent, unique
 
 RESOLUTION = 0.002
 

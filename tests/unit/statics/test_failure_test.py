@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from engine import block, rectangle, running_wall, simulation, tables
 
-from dem_cli.contact.detect import world_corners
-from dem_cli.engine import measures
-from dem_cli.engine.budget import Budget
-from dem_cli.engine.measures import free_falls
-from dem_cli.kernels import records as slot
-from dem_cli.model.scales import depth
-from dem_cli.statics.compliance import compliance
-from dem_cli.statics.equilibrium import relax, settle_or_fail, stand
-from dem_cli.statics.failure_test import FailureTest, displaced, moved_far
+from dem_cli.core.contact.detect import world_corners
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.engine.measures import free_falls
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.model.scales import depth
+from dem_cli.core.statics.compliance import compliance
+from dem_cli.core.statics.equilibrium import relax, settle_or_fail, stand
+from dem_cli.core.statics.failure_test import FailureTest, displaced, moved_far
 
 GROUND = block("ground", rectangle(-3, -1, 6, 0), fixed=True)
 NEEDLE = block("needle", rectangle(0, 0, 0.25, 1))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.statics.hysteresis import PathState, energy_between, loops, pairs_of
+from dem_cli.core.statics.hysteresis import PathState, energy_between, loops, pairs_of
 
 
 @pytest.mark.parametrize(

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from engine import block, rectangle, scene, solve, tables
 
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.engine.static_settings import ImplicitHistorySettings
-from dem_cli.limit.analysis import start_structure
-from dem_cli.limit.cone import friction_of
-from dem_cli.limit.elastic import Elastic
-from dem_cli.statics.implicit_history import FAILS, HOLDS, ImplicitHistory
-from dem_cli.statics.warm_start import GRAVITY, IMPLICIT
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.engine.static_settings import ImplicitHistorySettings
+from dem_cli.core.limit.analysis import start_structure
+from dem_cli.core.limit.cone import friction_of
+from dem_cli.core.limit.elastic import Elastic
+from dem_cli.core.statics.implicit_history import FAILS, HOLDS, ImplicitHistory
+from dem_cli.core.statics.warm_start import GRAVITY, IMPLICIT
 
 CASES = Path(__file__).resolve().parents[3] / "cases" / "verification"
 RESOLUTION = 0.002

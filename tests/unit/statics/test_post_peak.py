@@ -11,10 +11,10 @@ import pytest
 from engine import block, rectangle, tables
 
 from dem_cli.analyses.pushover import _off_the_load
-from dem_cli.engine.budget import Budget
-from dem_cli.engine.simulation import Simulation
-from dem_cli.engine.track import Track
-from dem_cli.statics.post_peak import CurvePeak, follow
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.engine.track import Track
+from dem_cli.core.statics.post_peak import CurvePeak, follow
 
 WALL = Path(__file__).resolve().parents[3] / "cases" / "verification" / "wall_3.toml"
 SLENDER = ("structure.0.courses=28", "structure.0.blocks_per_course=5", "analysis.follow=0.02")

@@ -7,13 +7,13 @@ import pytest
 from engine import scene
 from studies.deformable import elastic_wall
 
-from dem_cli.engine import measures
-from dem_cli.engine.monitors import Monitors
-from dem_cli.engine.placement import moves
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.simulation import Simulation
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.monitors import Monitors
+from dem_cli.core.engine.placement import moves
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.kernels import records as slot
 from dem_cli.errors import CaseError
-from dem_cli.kernels import records as slot
 
 YOUNG, KN = 1e9, 1e10
 WIDE, HIGH, DEEP, BLOCKS = 0.4, 0.3, 0.5, 3

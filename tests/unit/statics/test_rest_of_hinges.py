@@ -3,10 +3,10 @@
 import pytest
 
 from dem_cli.analyses.solve import solve
-from dem_cli.bench.cases import KNOWN_STRUCTURES
-from dem_cli.records.ports import Observer
-from dem_cli.statics import failure_load
-from dem_cli.statics.equilibrium import Verdict
+from dem_cli.app.bench.cases import KNOWN_STRUCTURES
+from dem_cli.core.records.ports import Observer
+from dem_cli.core.statics import failure_load
+from dem_cli.core.statics.equilibrium import Verdict
 
 
 def solved(name, *overrides):

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from engine import block, rectangle, scene, solve, tables
 
-from dem_cli.assembly.validate import monitor_problems
-from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.limit.analysis import limit_loads
 from dem_cli.errors import CaseError
-from dem_cli.limit.analysis import limit_loads
+from dem_cli.masonry.assembly.validate import monitor_problems
 
 MU, WIDE, HIGH, KN, KS = 0.5, 0.2, 0.6, 2e9, 5e8
 WEIGHT = 2000.0 * 9.81 * WIDE * HIGH

@@ -5,8 +5,8 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem_cli.engine.static_settings import LoadSearchSettings
-from dem_cli.statics.trial_loads import TrialLoads
+from dem_cli.core.engine.static_settings import LoadSearchSettings
+from dem_cli.core.statics.trial_loads import TrialLoads
 
 SETTINGS = LoadSearchSettings()
 

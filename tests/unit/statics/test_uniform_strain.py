@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 from engine import scene
 
-from dem_cli.engine import measures
-from dem_cli.engine.budget import Budget
-from dem_cli.engine.monitors import Monitors
-from dem_cli.engine.placement import moves
-from dem_cli.engine.properties import joint_properties, law_of
-from dem_cli.engine.settings import DEFAULT
-from dem_cli.engine.simulation import Simulation
+from dem_cli.core.engine import measures
+from dem_cli.core.engine.budget import Budget
+from dem_cli.core.engine.monitors import Monitors
+from dem_cli.core.engine.placement import moves
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.engine.settings import DEFAULT
+from dem_cli.core.engine.simulation import Simulation
+from dem_cli.core.geometry.rotation import turned_as_one
+from dem_cli.core.kernels import records as slot
+from dem_cli.core.model import uniform_strain
+from dem_cli.core.statics.equilibrium import stand
 from dem_cli.errors import CaseError
-from dem_cli.geometry.rotation import turned_as_one
-from dem_cli.kernels import records as slot
-from dem_cli.model import uniform_strain
-from dem_cli.output.block_stress import mean_stresses
-from dem_cli.statics.equilibrium import stand
+from dem_cli.results.output.block_stress import mean_stresses
 
 CASES = Path(__file__).resolve().parents[3] / "cases"
 YOUNG, POISSON, KN, KS = 1e9, 0.25, 1e10, 4e9

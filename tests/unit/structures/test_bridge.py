@@ -7,9 +7,9 @@ import pytest
 from pydantic import ValidationError
 from synthetic.skins import free_volume, model_of, open_area
 
-from dem_cli.geometry import polygon
-from dem_cli.structures.arch import SHAPE_JOINTS, Arch
-from dem_cli.structures.bridge import Bridge, build
+from dem_cli.core.geometry import polygon
+from dem_cli.masonry.structures.arch import SHAPE_JOINTS, Arch
+from dem_cli.masonry.structures.bridge import Bridge, build
 
 ONE = {"span": 5.0, "rise": 1.5, "ring": 0.45, "voussoirs": 13}
 TWO = ONE | {

@@ -12,14 +12,14 @@ from shapely.ops import unary_union
 from studies.space.structures import corner_wall, tee_wall, u_wall
 from synthetic.spatial_case import spatial_case
 
-from dem_cli.assembly.assemble import assembly
-from dem_cli.assembly.validate import problems
-from dem_cli.contact.between import StartJoints
-from dem_cli.contact.detect import find_joints
-from dem_cli.contact.geometry import geometry_of
+from dem_cli.core.contact.between import StartJoints
+from dem_cli.core.contact.detect import find_joints
+from dem_cli.core.contact.geometry import geometry_of
+from dem_cli.core.geometry.solids import face_areas
+from dem_cli.core.model.places import undeformed
 from dem_cli.errors import CaseError
-from dem_cli.geometry.solids import face_areas
-from dem_cli.model.places import undeformed
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.assembly.validate import problems
 
 T, H = 0.3, 0.25  # thickness of walls, height of courses
 

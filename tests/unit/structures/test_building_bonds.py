@@ -7,7 +7,7 @@ import pytest
 from shapely.ops import unary_union
 from unit.structures.test_building import PLANS, Built, H, T, wall
 
-from dem_cli.contact.between import StartJoints
+from dem_cli.core.contact.between import StartJoints
 from dem_cli.errors import CaseError
 
 LENGTH = 0.5  # of a block [m]

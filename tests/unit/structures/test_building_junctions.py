@@ -6,8 +6,8 @@ import pytest
 from synthetic.spatial_case import spatial_case
 
 from dem_cli.analyses.solve import solve
-from dem_cli.assembly.assemble import assemble
-from dem_cli.records.ports import Observer
+from dem_cli.core.records.ports import Observer
+from dem_cli.masonry.assembly.assemble import assemble
 
 T, L, H = 0.3, 0.6, 0.25  # thickness of walls, length and height of blocks [m]
 HOST = {"id": "host", "axis": [[-0.9, 0.0], [0.9, 0.0]]}

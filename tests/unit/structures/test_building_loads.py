@@ -6,8 +6,8 @@ import pytest
 from synthetic.spatial_case import spatial_case
 
 from dem_cli.analyses.solve import solve
-from dem_cli.assembly.assemble import assemble
-from dem_cli.records.ports import Observer
+from dem_cli.core.records.ports import Observer
+from dem_cli.masonry.assembly.assemble import assemble
 
 T, RHO = 0.3, 2143.0  # thickness [m], density of peperino [kg/m3]
 

@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from dem_cli.geometry import polygon
-from dem_cli.structures import arch
-from dem_cli.structures.columns import column
-from dem_cli.structures.placement import corner_blocks, place
+from dem_cli.core.geometry import polygon
+from dem_cli.masonry.structures import arch
+from dem_cli.masonry.structures.columns import column
+from dem_cli.masonry.structures.placement import corner_blocks, place
 
 SEMICIRCLE = {"voussoirs": 21, "radius": 1.0, "ring": 0.15}
 PORTAL = {"voussoirs": 6, "inner_radius": 0.2, "ring": 0.08, "columns": {"width": 0.16, "height": 0.32}}

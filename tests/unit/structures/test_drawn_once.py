@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.cli.main import main
-from dem_cli.structures.patterns import voronoi, voronoi_wall
-from dem_cli.structures.patterns.drawn_once import MOST_KEPT, drawn_once
-from dem_cli.structures.patterns.voronoi_wall import VoronoiWall
+from dem_cli.app.cli.main import main
+from dem_cli.masonry.structures.patterns import voronoi, voronoi_wall
+from dem_cli.masonry.structures.patterns.drawn_once import MOST_KEPT, drawn_once
+from dem_cli.masonry.structures.patterns.voronoi_wall import VoronoiWall
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg"><rect x="0" y="0" width="{width}" height="3"/></svg>'
 

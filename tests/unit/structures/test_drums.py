@@ -9,7 +9,7 @@ import pytest
 from pydantic import ValidationError
 from synthetic.skins import free_volume, model_of, open_area
 
-from dem_cli.structures.columns import drums, temple_front
+from dem_cli.masonry.structures.columns import drums, temple_front
 
 COLUMN = {
     "radius": 0.45,

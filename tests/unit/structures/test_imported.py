@@ -12,10 +12,10 @@ import trimesh
 from synthetic.drawn_elsewhere import by_trimesh, facade_by_ezdxf, obj_text, prism, wall_boxes
 
 from dem_cli.case.base import KeyProblem
-from dem_cli.geometry import polygon
-from dem_cli.geometry.solid_decomposition import volume
-from dem_cli.model.blocks import corners_of
-from dem_cli.structures.imported import Import, imported
+from dem_cli.core.geometry import polygon
+from dem_cli.core.geometry.solid_decomposition import volume
+from dem_cli.core.model.blocks import corners_of
+from dem_cli.masonry.structures.imported import Import, imported
 
 L = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0)]
 SQUARE = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]

@@ -9,11 +9,11 @@ from pydantic import ValidationError
 from shapely.geometry import Polygon, box
 from synthetic.skins import free_volume, model_of, open_area
 
-from dem_cli.geometry import polygon
-from dem_cli.structures import arch
-from dem_cli.structures.openings import Opening
-from dem_cli.structures.wall import Wall
-from dem_cli.structures.wall_blocks import build
+from dem_cli.core.geometry import polygon
+from dem_cli.masonry.structures import arch
+from dem_cli.masonry.structures.openings import Opening
+from dem_cli.masonry.structures.wall import Wall
+from dem_cli.masonry.structures.wall_blocks import build
 
 SHAPES = ("segmental", "semicircular", "pointed", "flat", "circle", "lintel", "none")
 

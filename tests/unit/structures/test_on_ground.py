@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from synthetic.spatial_case import spatial_case
 
-from dem_cli.assembly.assemble import assembly
 from dem_cli.errors import CaseError
-from dem_cli.structures.building.table import Building
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.structures.building.table import Building
 
 WALLS = [{"id": "a", "axis": [[0.0, 0.0], [3.0, 0.0]]}, {"id": "b", "axis": [[0.0, 0.0], [0.0, 3.0]]}]
 BUILDING = {"kind": "building", "material": "peperino", "block": [0.5, 0.25], "courses": 2, "walls": WALLS}

@@ -8,11 +8,11 @@ from pydantic import ValidationError
 from synthetic.skins import free_volume, model_of, open_area
 
 import dem_cli
-from dem_cli.assembly.assemble import assembly
-from dem_cli.assembly.sanity import doubts
 from dem_cli.case.base import KeyProblem
-from dem_cli.geometry import polygon
-from dem_cli.structures.registry import GENERATORS, generated_blocks, generated_figures
+from dem_cli.core.geometry import polygon
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.assembly.sanity import doubts
+from dem_cli.masonry.structures.registry import GENERATORS, generated_blocks, generated_figures
 
 LENGTH, HEIGHT, THICKNESS = 4.0, 2.4, 0.5
 DOOR = {"x": 1.5, "y": 0.0, "width": 0.9, "height": 1.4, "lintel": {"height": 0.2, "bearing": 0.25}}

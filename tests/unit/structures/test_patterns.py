@@ -11,11 +11,11 @@ from shapely.geometry import Polygon, box
 from shapely.ops import unary_union
 
 from dem_cli.case.base import KeyProblem
-from dem_cli.geometry import polygon
-from dem_cli.geometry.decomposition import convex_parts, is_simple
-from dem_cli.structures.patterns import coursed, voronoi
-from dem_cli.structures.patterns.panel import LEAST_SHARE, WallPanel, blocks_of, rectangular
-from dem_cli.structures.patterns.tiling import Tiling
+from dem_cli.core.geometry import polygon
+from dem_cli.core.geometry.decomposition import convex_parts, is_simple
+from dem_cli.masonry.structures.patterns import coursed, voronoi
+from dem_cli.masonry.structures.patterns.panel import LEAST_SHARE, WallPanel, blocks_of, rectangular
+from dem_cli.masonry.structures.patterns.tiling import Tiling
 
 BOXES = [(8.0, 0.0, 10.0, 3.0), (7.5, 3.0, 10.5, 3.4), (3.2, 5.0, 4.4, 7.0)]
 DOOR_AND_WINDOW = rectangular(20.0, 10.0, BOXES)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from synthetic.spatial_case import spatial_case
 
-from dem_cli.assembly.assemble import assemble
-from dem_cli.assembly.validate import problems
-from dem_cli.contact.detect import find_joints
-from dem_cli.model.places import undeformed
+from dem_cli.core.contact.detect import find_joints
+from dem_cli.core.model.places import undeformed
+from dem_cli.masonry.assembly.assemble import assemble
+from dem_cli.masonry.assembly.validate import problems
 
 WALL = {"kind": "wall", "block": [1.0, 0.5], "courses": 4, "blocks_per_course": 6, "thickness": 0.8}
 
@@ -114,6 +114,6 @@ def test_walls_at_right_angles_meet_without_overlap():
     across = WALL | {"id": "return", "rotation_deg": 90.0, "origin": [0.4, 0.4, 0.0], "blocks_per_course": 3}
     case = spatial_case(structure=[WALL, across])
     found = assemble(case)
-    from dem_cli.assembly.assemble import assembly
+    from dem_cli.masonry.assembly.assemble import assembly
 
     assert problems(case, found, assembly(case).blocks) == []

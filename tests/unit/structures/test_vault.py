@@ -8,9 +8,9 @@ from pydantic import ValidationError
 from synthetic.skins import free_volume, model_of, open_area
 
 from dem_cli.case.base import KeyProblem
-from dem_cli.structures.arch import SHAPE_JOINTS, Arch
-from dem_cli.structures.vaults import shapes
-from dem_cli.structures.vaults.table import Vault
+from dem_cli.masonry.structures.arch import SHAPE_JOINTS, Arch
+from dem_cli.masonry.structures.vaults import shapes
+from dem_cli.masonry.structures.vaults.table import Vault
 
 DOME = {"shape": "dome", "radius": 5.0, "thickness": 0.4, "courses": 6, "per_course": 12}
 BARREL = {"shape": "barrel", "span": 4.0, "length": 6.0, "thickness": 0.4, "voussoirs": 9, "rows": 4}

@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from dem_cli.geometry import polygon
-from dem_cli.structures.placement import corner_blocks
-from dem_cli.structures.wall import Wall
-from dem_cli.structures.wall_blocks import build
+from dem_cli.core.geometry import polygon
+from dem_cli.masonry.structures.placement import corner_blocks
+from dem_cli.masonry.structures.wall import Wall
+from dem_cli.masonry.structures.wall_blocks import build
 
 
 def wall(**keys) -> Wall:

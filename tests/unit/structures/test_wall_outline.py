@@ -9,10 +9,10 @@ from synthetic.drawn_elsewhere import elevation_by_ezdxf
 from synthetic.skins import free_volume, model_of, open_area
 
 import dem_cli
-from dem_cli.assembly.assemble import assembly
-from dem_cli.assembly.sanity import doubts
-from dem_cli.geometry import polygon
-from dem_cli.structures.registry import GENERATORS, generated_blocks
+from dem_cli.core.geometry import polygon
+from dem_cli.masonry.assembly.assemble import assembly
+from dem_cli.masonry.assembly.sanity import doubts
+from dem_cli.masonry.structures.registry import GENERATORS, generated_blocks
 
 THICKNESS = 0.5
 COURSES = {"spacing": [0.4, 0.05], "segment": [0.8, 0.3], "deviation": [0.0, 0.04], "head_spacing": [0.6, 0.2]}
@@ -196,7 +196,7 @@ def test_svg_groups_are_layers(tmp_path):
 def test_rubble_in_an_outline_is_written_with_its_case():
     """Tables keep arrays of what was drawn beside their keys: those are not compared."""
     from dem_cli.case.writer import effective
-    from dem_cli.structures.patterns.voronoi_wall import VoronoiWall
+    from dem_cli.masonry.structures.patterns.voronoi_wall import VoronoiWall
 
     given = {
         "kind": "voronoi-wall",

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from dem_cli.cli.main import main
+from dem_cli.app.cli.main import main
+from dem_cli.app.sweep.cluster import doubt
 from dem_cli.errors import UsageError
-from dem_cli.sweep.cluster import doubt
 
 ROOT = Path(__file__).resolve().parents[3]
 SCRIPT = """
@@ -32,7 +32,7 @@ def work(job):
 if __name__ == "__main__":
     import deadly
     from dask.distributed import LocalCluster
-    from dem_cli.sweep.cluster import connected, on_cluster
+    from dem_cli.app.sweep.cluster import connected, on_cluster
 
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, host="127.0.0.1") as cluster:
         with connected(cluster.scheduler_address, Path(".")) as client:
@@ -63,7 +63,7 @@ def test_a_sweep_says_so(tmp_path, monkeypatch):
     def away(address, folder):
         raise UsageError("no scheduler")
 
-    monkeypatch.setattr("dem_cli.sweep.cluster.connected", away)
+    monkeypatch.setattr("dem_cli.app.sweep.cluster.connected", away)
     (tmp_path / "case.toml").write_text(CliRunner().invoke(main, ["new", "sweep"]).stdout, encoding="utf-8")
     words = ["sweep", str(tmp_path / "case.toml"), "-q", "-o", str(tmp_path / "out"), "--scheduler", "tcp://head:8786"]
     said = CliRunner().invoke(main, words).stderr

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from dem_cli.sweep.identity import PACKAGE, hash_of_sources, program
+from dem_cli.app.sweep.identity import PACKAGE, hash_of_sources, program
 
 
 @pytest.fixture

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from dem_cli.app.sweep import plan
+from dem_cli.app.sweep.distributions import drawn, even, latin_hypercube
+from dem_cli.app.sweep.plan import plan_of
 from dem_cli.case.sweep import Sweep
 from dem_cli.errors import CaseError
-from dem_cli.sweep import plan
-from dem_cli.sweep.distributions import drawn, even, latin_hypercube
-from dem_cli.sweep.plan import plan_of
 
 FRICTION, COURSES = "joints.dry.friction", "structure.0.courses"
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from dem_cli.sweep.pool import WorkerDeath, each_done
+from dem_cli.app.sweep.pool import WorkerDeath, each_done
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -56,7 +56,7 @@ def test_an_error_of_the_function_comes_to_the_caller():
 
 PARENT = """
 import sys, time
-from dem_cli.sweep.pool import each_done
+from dem_cli.app.sweep.pool import each_done
 def sleep_long(n):
     import os
     print(os.getpid(), flush=True)

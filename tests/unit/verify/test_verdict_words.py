@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from dem_cli.verify.case_selection import longest_first
-from dem_cli.verify.records import counts, merged, moved, on_shelves, rounded, state
-from dem_cli.verify.verdict_words import allowed, judgement, off, share, shown
+from dem_cli.app.verify.case_selection import longest_first
+from dem_cli.app.verify.records import counts, merged, moved, on_shelves, rounded, state
+from dem_cli.app.verify.verdict_words import allowed, judgement, off, share, shown
 
 
 def answer(value, found, error, **more):

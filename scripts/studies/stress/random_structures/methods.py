@@ -5,11 +5,11 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from dem_cli import api
-from dem_cli.assembly.solver_request import solver_request
-from dem_cli.engine.properties import joint_properties, law_of
+from dem_cli.app import api
+from dem_cli.core.engine.properties import joint_properties, law_of
+from dem_cli.core.limit.analysis import limit_loads
 from dem_cli.errors import DemError
-from dem_cli.limit.analysis import limit_loads
+from dem_cli.masonry.assembly.solver_request import solver_request
 from studies.solution import from_tables, solve
 
 Tables = dict[str, Any]

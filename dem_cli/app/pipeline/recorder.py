@@ -1,0 +1,92 @@
+"""The observer of a run: everything that a solver reports goes to the files, and progress to the listener."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from dem_cli.core.records.ports import Observer
+from dem_cli.interrupts import look
+from dem_cli.results.output.resume.kept_values import Damaged
+
+if TYPE_CHECKING:
+    from dem_cli.app.pipeline.listener import RunListener
+    from dem_cli.core.contact.drawn_joints import DrawnJoints
+    from dem_cli.core.model.model import Model
+    from dem_cli.core.records.frames import Frame
+    from dem_cli.core.records.history_rows import HistoryRow, RunRow, Samples
+    from dem_cli.results.output.resume.stages import KeptStages
+    from dem_cli.results.output.store import ResultWriter
+
+
+def joints_of(model: Model) -> DrawnJoints:
+    """The joints of a structure, found when there is a frame to keep: that is compiled."""
+    from dem_cli.core.contact.drawn_joints import DrawnJoints
+
+    return DrawnJoints(model)
+
+
+TOLD = {  # what the files are told, and of which class it is
+    "frame": "Frame", "row": "HistoryRow", "samples": "Samples", "structure": "Model", "runs": "RunRow",
+}  # fmt: skip
+
+
+class Recorder(Observer):
+    """The observer of a run: keeps what comes, and says where the run stands."""
+
+    def __init__(self, writer: ResultWriter, listener: RunListener):
+        self.writer, self.listener = writer, listener
+        self._noted: KeptStages | None = None
+        self._last: tuple[str, float, float, float | None] | None = None  # of what was said of the progress
+
+    def keep(self, stages: KeptStages) -> None:
+        """From now on they are told what goes into the files, for a run that goes on from there."""
+        self.stages = self._noted = stages
+        stages.goes_on, stages.gives_up = self.goes_on, self.listener.stages_not_kept
+
+    def tell(self, kind: str, record: Any) -> None:
+        """Into the files: a "frame", "row", "samples", "structure" or "runs"."""
+        getattr(self.writer, kind)(record)
+
+    def tell_again(self, kind: str, record: Any) -> None:
+        """As `tell`, what an interrupted run told. Raises Damaged where no run tells that."""
+        each = record if kind == "runs" and isinstance(record, (list, tuple)) else (record,)
+        if not all(type(one).__name__ == TOLD.get(kind) for one in each):
+            raise Damaged(f"the results are told a {type(record).__name__}")
+        self.tell(kind, record)
+
+    def _tell(self, kind: str, record: Any) -> None:
+        self.tell(kind, record)
+        if self._noted is not None:
+            self._noted.note(kind, record)
+
+    def frame(self, frame: Frame) -> None:
+        """Into the files."""
+        self._tell("frame", frame)
+
+    def row(self, row: HistoryRow) -> None:
+        """Into the files."""
+        self._tell("row", row)
+
+    def samples(self, samples: Samples) -> None:
+        """Into the files."""
+        self._tell("samples", samples)
+
+    def structure(self, model: Model) -> None:
+        """Into the files."""
+        self._tell("structure", model)
+
+    def runs(self, rows: Sequence[RunRow]) -> None:
+        """Into the files."""
+        self._tell("runs", rows)
+
+    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        """To the listener. Raises KeyboardInterrupt where one came."""
+        self._last = stage, load, displacement, fraction
+        self.listener.progress(*self._last)
+        look()
+
+    def goes_on(self) -> None:
+        """A stage goes on that has nothing new to say: its time does."""
+        if self._last is not None:
+            self.listener.progress(*self._last)

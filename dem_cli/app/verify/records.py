@@ -1,0 +1,136 @@
+"""Verification records: what is kept of a verified case, and of all of them in verification.json."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from dem_cli.app.verify.case_selection import APART, SHELVES
+from dem_cli.case.reader import parse_toml, read_text
+from dem_cli.errors import DemError, UsageError
+from dem_cli.results.output.reference import as_declared, error_of, unexpected_fall, verdicts
+from dem_cli.results.output.scalars import plain
+
+Record = dict[str, Any]  # of a case: see `record`
+VERDICT_STATES = ("passed", "missed", "failed", "met")  # of a reference; missed: as declared; met: declared as missed
+
+
+def record(path: Path, title: str, summary: Mapping[str, Any], references: Sequence[Any], seconds: float) -> Record:
+    """A case that was solved: file, title, kind of analysis, status, seconds, and one dict for each reference.
+
+    Those are the verdicts of results/output/reference.py with `source`, `error`, what was found less what was expected,
+    and, where the tolerance is the case's own, the `reason` for it.
+    """
+    status = str(summary["status"])
+    answers = [
+        {**answer, **_told(reference), "error": error_of(answer)}
+        for answer, reference in zip(verdicts(summary, references), references, strict=True)
+    ]
+    kept = {"case": path.as_posix(), "sha256": digest(path), "title": title, "kind": summary["kind"], "status": status}
+    kept |= {"seconds": rounded(seconds), "references": [dict(answer, state=state(answer)) for answer in answers]}
+    if status.startswith("not converged"):
+        kept["error"] = "; ".join([status, *summary.get("warnings", ())])
+    elif unexpected_fall(summary, answers):
+        kept["error"] = f"{status}, which no [reference] expects"
+    return plain(kept)
+
+
+def _told(reference: Any) -> dict[str, str]:
+    """Words of a [reference] that the page prints."""
+    own = reference.tolerance is not None or reference.relative is not None
+    return {"source": reference.source} | ({"reason": reference.reason or "not said"} if own else {})
+
+
+def failed(path: Path, reason: str, bad: bool) -> Record:
+    """A case that could not be solved; bad: the case file is wrong."""
+    kept = {"case": path.as_posix(), "title": path.stem, "error": reason, "bad": bad, "references": [], "seconds": 0.0}
+    return kept | {"sha256": digest(path)}
+
+
+def state(answer: Mapping[str, Any]) -> str:
+    """One of STATES."""
+    if as_declared(answer):
+        return "passed" if answer["passed"] else "missed"
+    return "met" if answer["passed"] and "missed" in answer else "failed"
+
+
+def digest(path: Path) -> str:
+    """SHA-256 of what a case file says; comments and spaces do not count."""
+    try:
+        said = json.dumps(parse_toml(path, read_text(path)), sort_keys=True, default=str)
+    except DemError:
+        said = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
+    return hashlib.sha256(said.encode()).hexdigest()
+
+
+def rounded(seconds: float) -> float:
+    """Two digits: more would change from run to run."""
+    return float(f"{seconds:.2g}")
+
+
+def on_shelves(records: Iterable[Record], shelves: Sequence[str]) -> list[Record]:
+    """Records with no references but those of some shelves; none: all."""
+    if not shelves:
+        return list(records)
+    wanted = [dict(r, references=[a for a in r["references"] if SHELVES[a["kind"]] in shelves]) for r in records]
+    return [r for r in wanted if r["references"] or "error" in r]
+
+
+def apart(records: Iterable[Record]) -> tuple[list[Record], list[Record]]:
+    """Records with the references that say something about dem, and those with references on the shelf of inference."""
+    records = list(records)
+    of_inference = [record for record in on_shelves(records, [APART]) if record["references"]]
+    others = on_shelves(records, [shelf for shelf in SHELVES.values() if shelf != APART])
+    return others, of_inference
+
+
+def counts(records: Iterable[Record]) -> dict[str, int]:
+    """How many cases and references there are, and how many references in each state; cases without an answer."""
+    records = list(records)
+    states = [answer["state"] for record in records for answer in record["references"]]
+    found = {"cases": len(records), "references": len(states)} | {name: states.count(name) for name in VERDICT_STATES}
+    return found | {"not solved": sum("error" in record for record in records)}
+
+
+def all_well(records: Iterable[Record]) -> bool:
+    """Whether everything is as the cases say."""
+    found = counts(records)
+    return not (found["failed"] or found["met"] or found["not solved"])
+
+
+def data_file(page: Path) -> Path:
+    """The JSON of a page."""
+    return page.parent / "data" / f"{page.stem}.json"
+
+
+def load(file: Path) -> list[Record]:
+    """Records of an earlier `dem verify --write`, cases as seen from here; none where there is no such file."""
+    if not file.is_file():
+        return []
+    try:
+        kept = json.loads(file.read_text(encoding="utf-8"))["cases"]
+        return [{**one, "case": moved(one["case"], file.parent.parent, Path())} for one in kept]
+    except (ValueError, KeyError, TypeError, OSError) as error:
+        raise UsageError(f"{file}: is not what `dem verify --write` left ({error}); remove it") from None
+
+
+def dump(records: Iterable[Record], page: Path, version: str) -> str:
+    """JSON text of records, one per line, their cases as seen from the page."""
+    cases = sorted(({**r, "case": moved(r["case"], Path(), page.parent)} for r in records), key=lambda r: r["case"])
+    lines = ",\n".join(json.dumps(case, ensure_ascii=False) for case in cases)
+    return f'{{"version": {json.dumps(version)}, "cases": [\n{lines}\n]}}\n'
+
+
+def moved(path: str, before: Path, after: Path) -> str:
+    """A path relative to one folder as one relative to another."""
+    return Path(os.path.relpath(before / path, after)).as_posix()
+
+
+def merged(old: Iterable[Record], new: Iterable[Record]) -> list[Record]:
+    """The new records, and the old ones of other cases that still exist."""
+    found = {r["case"]: r for r in old if Path(r["case"]).is_file()}
+    return list((found | {r["case"]: r for r in new}).values())

@@ -1,0 +1,93 @@
+"""Solving time: the clock of a run, which stands still while kernels are compiled and results are written."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from typing import TYPE_CHECKING, TypeVar
+
+from dem_cli.core.kernels.compilation.compile_time import Compilation
+from dem_cli.core.records.frames import Frame
+from dem_cli.core.records.history_rows import HistoryRow, RunRow, Samples
+from dem_cli.core.records.ports import Observer
+from dem_cli.interrupts import at_once
+
+if TYPE_CHECKING:
+    from dem_cli.core.engine.simulation import Simulation
+    from dem_cli.core.model.model import Model
+
+AnySimulation = TypeVar("AnySimulation", bound="Simulation")
+
+
+class Clock(Observer):
+    """Seconds of solving, without the compilation of kernels and what the observer does with results.
+
+    It is an observer itself and hands everything on.
+    """
+
+    def __init__(self, observer: Observer) -> None:
+        self.started, self.compiling, self.observing = time.perf_counter(), 0.0, 0.0
+        self.observer, self.stages = observer, observer.stages
+
+    def frame(self, frame: Frame) -> None:
+        """Hands on a frame, off the clock."""
+        begun = time.perf_counter()
+        self.observer.frame(frame)
+        self.observing += time.perf_counter() - begun
+
+    def row(self, row: HistoryRow) -> None:
+        """Hands on a row, off the clock."""
+        begun = time.perf_counter()
+        self.observer.row(row)
+        self.observing += time.perf_counter() - begun
+
+    def samples(self, samples: Samples) -> None:
+        """Hands on samples, off the clock."""
+        begun = time.perf_counter()
+        self.observer.samples(samples)
+        self.observing += time.perf_counter() - begun
+
+    def runs(self, rows: Sequence[RunRow]) -> None:
+        """Hands on the table of all runs."""
+        self.observer.runs(rows)
+
+    def structure(self, model: Model) -> None:
+        """Hands on another structure."""
+        self.observer.structure(model)
+
+    def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
+        """Hands on where the run stands, off the clock."""
+        begun = time.perf_counter()
+        self.observer.progress(stage, load, displacement, fraction)
+        self.observing += time.perf_counter() - begun
+
+    def compiled(self, make: Callable[[], AnySimulation]) -> AnySimulation:
+        """A simulation with its kernels compiled or loaded off the clock, and all else on it."""
+        compilation = Compilation(lambda: self.progress("compiling (once)", 0.0, 0.0, None))
+        with compilation.heard():
+            sim = make()
+            sim.stages = self.stages
+            built, made = time.perf_counter(), compilation.seconds
+            with at_once():  # a minute, the first time
+                sim.compile()
+        self.compiling += made + time.perf_counter() - built
+        return sim
+
+    def imported(self, module: str) -> None:
+        """Imports a module that only some runs need, off the clock."""
+        begun = time.perf_counter()
+        import_module(module)
+        self.compiling += time.perf_counter() - begun
+
+    def seconds(self) -> float:
+        """Seconds of solving so far, with those before a run that was resumed."""
+        return self.stages.before + time.perf_counter() - self.started - self.compiling - self.observing
+
+
+def duration_words(value: float) -> str:
+    """Two figures are more than such an estimate is worth."""
+    for limit, unit, name in ((0.1, 1e-3, "ms"), (120.0, 1.0, "s"), (7200.0, 60.0, "min")):
+        if value < limit:
+            return f"{value / unit:.2g} {name}"
+    return f"{value / 3600.0:.2g} h"

@@ -1,0 +1,45 @@
+"""Follower loads: forces that go along with a material point of their block, and may turn with the block."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dem_cli.core.geometry.rotation import moments, turning
+
+
+class FollowingLoads(NamedTuple):
+    """Forces at points of blocks, as they were drawn; all other loads keep their direction and their lever."""
+
+    blocks: np.ndarray  # that each acts on, (n,) int64
+    arms: np.ndarray  # from the centroids to the points, undeformed [m], (n, d)
+    forces: np.ndarray  # as drawn [N], (n, d)
+    dead: np.ndarray  # constant; else times the multiplier, (n,) bool
+    turning: np.ndarray  # whether the direction turns with the block, (n,) bool
+
+    def shifted(self, shifts: np.ndarray) -> FollowingLoads:
+        """The same of blocks whose centroids are elsewhere by so much [m], (n_blocks, d)."""
+        return self._replace(arms=self.arms - shifts[self.blocks])
+
+    def change(self, orientations: np.ndarray, dead: bool) -> np.ndarray:
+        """What dead or live ones are more than as drawn, about the centroids [N, N m], (n_blocks, n_dof).
+
+        orientations: of all blocks, as Bodies has them.
+        """
+        blocks, arms, forces, _, turns = (values[self.dead == dead] for values in self)
+        turned = turning(orientations[blocks])
+        moved, now = turned(arms), np.where(turns[:, None], turned(forces), forces)
+        more = np.column_stack([now - forces, moments(moved, now) - moments(arms, forces)])
+        total = np.zeros((len(orientations), more.shape[1]))
+        np.add.at(total, blocks, more)
+        return total
+
+    def beyond(self, orientations: np.ndarray, rotations: np.ndarray) -> float:
+        """Work-conjugate displacement of the live ones beyond that of their drawn resultants [J]: F·(R r − r) − M·θ.
+
+        rotations: rotation vectors of all blocks (n_blocks, r). Along the directions as drawn.
+        """
+        blocks, arms, forces, _, _ = (values[~self.dead] for values in self)
+        swung = turning(orientations[blocks])(arms) - arms
+        return float((forces * swung).sum() - (moments(arms, forces) * rotations[blocks]).sum())

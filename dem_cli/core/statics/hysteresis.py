@@ -1,0 +1,96 @@
+"""Hysteresis loops of a load path: energy dissipated in each cycle, and the viscous damping of as much.
+
+A loop goes from a turning point of the path to one at the same value, the start, 0, included. Its damping is that of a
+linear oscillator of the same amplitudes F, u that loses as much energy E in a cycle:
+
+    ζ = E / (2π F u)
+
+Between two states of rest the load did at least what friction and springs took, at most all that it gave in the run;
+in between, damping of the run, are motion of the solver that is none of the structure, and what snaps. Within these
+bounds its work is that of a multiplier that is straight in the displacement.
+
+Source: Chopra, Dynamics of Structures, equivalent viscous damping, ζ = E_D/(4π E_S0) with E_S0 = F u/2. Of an elastic,
+perfectly plastic system of ductility μ this is 2/π (1 − 1/μ).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dem_cli.core.engine import measures
+from dem_cli.core.kernels import records as slot
+
+if TYPE_CHECKING:
+    from dem_cli.core.engine.simulation import Simulation
+
+
+class PathState(NamedTuple):
+    """A state of rest on a path."""
+
+    displacement: float  # of the live load [m]
+    load: float  # its multiplier
+    share: float  # of loads that a tilting table leaves them
+    given: float  # work of the live load since the start [J]
+    damped: float  # what numerical damping took of it [J]
+
+
+class HysteresisLoop(NamedTuple):
+    """One cycle."""
+
+    first: int  # turning point that it begins at, from 1; 0: the start of the path
+    last: int  # and ends at
+    energy: float  # dissipated [J]
+    displacement: float  # amplitude: half of its range [m]
+    load: float  # amplitude: half of its range [-]
+    damping: float  # equivalent damping ratio [-]
+
+
+def pairs_of(path: Sequence[float]) -> list[tuple[int, int]]:
+    """Turning points between which a path makes loops, none over another, short ones first; 0 is its start, at 0."""
+    values = [0.0, *path]
+    found: list[tuple[int, int]] = []
+    for span in range(2, len(values)):
+        for first in range(len(values) - span):
+            free = all(first + span <= one or first >= other for one, other in found)
+            if free and np.isclose(values[first], values[first + span], rtol=1e-9, atol=0.0):
+                found.append((first, first + span))
+    return sorted(found)
+
+
+def state_of(sim: Simulation, at_rest: float) -> PathState:
+    """Where a simulation is; at_rest: `measures.live_travel` at the start of the path [m]."""
+    travel, ledger = measures.live_travel(sim) - at_rest, sim.ledger
+    load, share = sim.load * sim.live_scale, sim.dead_share
+    return PathState(travel, load, share, float(ledger[slot.LIVE]), float(ledger[slot.DAMPING]))
+
+
+def energy_between(states: Sequence[PathState], force: float) -> float:
+    """Work of the live load from the first state to the last [J]. force: of it at a multiplier of 1 [N]."""
+    u, loads, shares, given, damped = np.array(states).T
+    straight = force * float(np.trapezoid(shares * loads, u))
+    most = float(given[-1] - given[0])
+    least = most - float(damped[-1] - damped[0])
+    return min(max(straight, min(least, most)), max(least, most))
+
+
+def loops(
+    path: Sequence[float], turns: Sequence[int], states: Sequence[PathState], force: float
+) -> list[HysteresisLoop]:
+    """The loops of a path that was followed as far as it was, by all its states.
+
+    turns: number of the state at the start of the path and at each turning point that was reached. force: of the live
+    load at a multiplier of 1 [N].
+    """
+    found = []
+    displacements, loads = np.array(states).T[:2]
+    for first, last in pairs_of(path[: len(turns) - 1]):
+        rows = slice(turns[first], turns[last] + 1)
+        u, load = displacements[rows], loads[rows]
+        energy = energy_between(states[rows], force)
+        sizes = 0.5 * float(np.ptp(u)), 0.5 * float(np.ptp(load))
+        elastic = 2.0 * np.pi * force * sizes[0] * sizes[1]
+        found.append(HysteresisLoop(first, last, energy, *sizes, energy / elastic if elastic > 0.0 else 0.0))
+    return found

@@ -1,0 +1,56 @@
+"""Applied loads: the forces at points that [[load]], [[pressure]] and [[fill]] of a case come to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_cli.core.model.model import Model
+from dem_cli.errors import CaseError, CaseProblem, KeyPath
+from dem_cli.masonry.assembly.exposure import Surfaces
+from dem_cli.masonry.assembly.falling_loads import falling_load
+from dem_cli.masonry.assembly.point_forces import AppliedLoad
+from dem_cli.masonry.assembly.surface_loads import fill, pressure
+
+if TYPE_CHECKING:
+    from dem_cli.case.load_tables import Load
+    from dem_cli.case.schema import Case
+
+
+def applied_loads(case: Case, model: Model) -> list[AppliedLoad]:
+    """All loads of a case, table by table. Raises CaseError where one acts on nothing."""
+    surfaces = Surfaces(model) if _need_surfaces(case) else None
+    found, problems = list[AppliedLoad](), list[CaseProblem]()
+    for key, resolve in (("load", _load), ("pressure", pressure), ("fill", fill)):
+        for i, table in enumerate(getattr(case, key)):
+            try:
+                found.append(resolve(case, model, surfaces, (key, i), table))
+            except CaseError as error:
+                problems += error.problems
+    if problems:
+        raise CaseError(problems)
+    return found
+
+
+def _need_surfaces(case: Case) -> bool:
+    return bool(case.pressure or case.fill) or any(load.falls or load.at is not None for load in case.load)
+
+
+def _load(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath, table: Load) -> AppliedLoad:
+    """Forces on one block, shared by several, or on what lies under them; with `inertia` as weights of masses."""
+    found = _forces(model, surfaces, path, table)
+    return found._replace(weights=-found.forces[:, -1]) if table.inertia else found
+
+
+def _forces(model: Model, surfaces: Surfaces | None, path: KeyPath, table: Load) -> AppliedLoad:
+    chosen = model.chosen(table.selected, False)
+    if table.falls or (table.at is not None and len(chosen) > 1):
+        return falling_load(model, surfaces, path, table)._replace(follows=table.follows)
+    points = model.centroids[chosen] if table.at is None else np.array([table.at])
+    shares = np.ones(len(chosen)) if table.each else model.masses[chosen] / model.masses[chosen].sum()
+    if len(chosen) == 1:
+        shares = np.ones(1)
+    forces = shares[:, np.newaxis] * np.array(table.force)
+    dead = table.kind == "dead"
+    return AppliedLoad(path, dead, chosen, points, forces, np.zeros(len(chosen)), follows=table.follows)

@@ -1,0 +1,60 @@
+"""Order of the case: results have blocks as the case file has them, structure by structure, then those drawn by hand.
+
+Solvers number blocks from the lowest up, so that neighbours lie close together in memory. Nobody else need know.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dem_cli.core.model.model import Model
+from dem_cli.core.records.frames import FRAME_ARRAYS, FrameStack, JointPlaces, LinkPlaces, LinkRecord
+
+
+class CaseOrder:
+    """From the numbers that blocks have in a solver to those that they have in the case, where these differ."""
+
+    def __init__(self, model: Model):
+        self.order = np.argsort(model.ranks, kind="stable")  # number in the solver of each block of the case
+        self.same = bool((self.order == np.arange(len(self.order))).all())  # also where a model does not say
+        self.places = np.argsort(self.order, kind="stable")
+
+    def model(self, model: Model) -> Model:
+        """The structure, without ties and bars where blocks are renumbered."""
+        return model if self.same else model.only(self.order.tolist(), model.fixed[self.order])
+
+    def joints(self, places: JointPlaces) -> JointPlaces:
+        """Joints as they were drawn, in their order."""
+        return places if self.same else places._replace(blocks=self.places[places.blocks])
+
+    def links(self, record: LinkRecord) -> LinkRecord:
+        """Ties and bars."""
+        return record if self.same else record._replace(places=self._of_links(record.places))
+
+    def _of_links(self, places: LinkPlaces) -> LinkPlaces:
+        held = places.blocks >= 0
+        return places._replace(blocks=np.where(held, self.places[places.blocks], places.blocks))
+
+    def stack(self, stack: FrameStack) -> FrameStack:
+        """Frames: rows of blocks, and the blocks of contact points and links."""
+        if self.same:
+            return stack
+        n, n_blocks = len(stack.frames), len(self.order)
+        rows = (n_blocks * np.arange(n)[:, None] + self.order).ravel()
+        blocks = stack.contacts.blocks
+        arrays = {name: getattr(stack, name)[rows] for name in FRAME_ARRAYS}
+        frames = tuple(
+            frame._replace(
+                **{name: getattr(frame, name)[self.order] for name in FRAME_ARRAYS},
+                stresses=None if frame.stresses is None else frame.stresses[self.order],
+                contacts=frame.contacts._replace(blocks=self.places[frame.contacts.blocks]),
+                links=frame.links and self.links(frame.links),
+            )
+            for frame in stack.frames
+        )
+        return stack._replace(
+            frames=frames,
+            contacts=stack.contacts._replace(blocks=blocks - blocks % n_blocks + self.places[blocks % n_blocks]),
+            stresses=None if stack.stresses is None else stack.stresses[rows],
+            **arrays,
+        )

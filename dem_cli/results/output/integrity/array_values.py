@@ -1,0 +1,39 @@
+"""Values of a dataset that was read: whether numbers are finite, and whole numbers are numbers of what is there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from dem_cli.errors import DamagedResults
+from dem_cli.results.output.layout import NUMBERS, ONE_MORE, WHOLE, Described
+
+MODEL = "/dem/model/"  # what was computed, as the case has it
+OVERFLOWS = 1e150  # whose square is hardly a number; a case has nothing beyond the fifth power of its largest number
+ENDLESS = ("row", "sample")  # axes of what a run that ended in nonsense kept of it: values need not be finite
+
+
+def checked(path: str, values: np.ndarray, said: Described, sizes: Mapping[str, int]) -> np.ndarray:
+    """The same values. sizes: of all axes. Raises DamagedResults."""
+    if said.kind == NUMBERS and said.axes[:1] not in [(axis,) for axis in ENDLESS]:
+        if not np.isfinite(values).all():
+            raise DamagedResults(f"{path} is not finite")
+        if path.startswith(MODEL) and (np.abs(values) > OVERFLOWS).any():
+            raise DamagedResults(f"{path} holds {np.abs(values).max():.3g}; products of such numbers are not finite")
+    elif said.kind == WHOLE and len(values):
+        _check_numbers(path, values, said, sizes)
+    return values
+
+
+def _check_numbers(path: str, values: np.ndarray, said: Described, sizes: Mapping[str, int]) -> None:
+    """Raises DamagedResults where whole numbers are of nothing that is there."""
+    low, high = int(values.min()), int(values.max())
+    of = f"of {said.counts} " if said.counts else ""
+    starts = said.axes[0].endswith(ONE_MORE)
+    most = sizes[said.counts] - (not starts) if said.counts else high
+    if low < said.least or high > most:
+        wrong = low if low < said.least else high
+        raise DamagedResults(f"{path} holds the number {of}{wrong}; {said.least} to {most} are there")
+    if starts and (low != values[0] or values[0] != 0 or values[-1] != most or (np.diff(values) < 0).any()):
+        raise DamagedResults(f"{path} does not count from 0 up to {most}")

@@ -1,0 +1,419 @@
+"""Keys of summary.json that reports, pictures and answers are made of: which kind of value each has to hold.
+
+Keys that are not named here may hold anything. What a table names without a default is missing where it is not there;
+`TOGETHER` names what comes along with a key that has a value.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from dem_cli.core.records.history_rows import MONITOR_UNITS
+from dem_cli.errors import DamagedResults, dotted
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Count = Annotated[int, Field(strict=True, ge=0)]
+Maybe = Number | None
+Pair = Annotated[list[Maybe], Field(min_length=2, max_length=2)]
+Range = Annotated[list[Number], Field(min_length=2, max_length=2)]
+KINDS = {  # of errors of pydantic -> what the value is not
+    "float_type": "a number", "int_type": "a whole number", "string_type": "text", "bool_type": "true or false",
+    "list_type": "a list", "too_short": "two numbers", "too_long": "two numbers", "dict_type": "a table",
+    "model_type": "a table",
+    "finite_number": "finite", "greater_than_equal": "a count", "int_from_float": "a whole number",
+}  # fmt: skip
+
+
+class SummaryTable(BaseModel):
+    """A table of a summary."""
+
+    model_config = ConfigDict(extra="allow", strict=True, defer_build=True)
+    TOGETHER: ClassVar[dict[str, tuple[str, ...]]] = {}
+
+
+class FoundPeak(SummaryTable):
+    """peaks.NAME."""
+
+    peak: Maybe
+    residual: Maybe
+    time: Maybe
+    unit: str
+    during_motion: Maybe = None
+    during_motion_time: Maybe = None
+
+
+class FoundMotion(SummaryTable):
+    """moved_far."""
+
+    block: str
+    distance: Number
+
+
+class FoundAbove(SummaryTable):
+    """above_the_bound."""
+
+    bound: Number
+    displacement: Number
+    bound_where_it_rests: Maybe
+    explained: bool
+
+
+class FoundValue(SummaryTable):
+    """monitors.NAME."""
+
+    value: Maybe = None
+    unit: str | None = None
+
+
+class FoundSpread(SummaryTable):
+    """repeats.peaks.NAME."""
+
+    median: Number
+    p16: Number
+    p84: Number
+    min: Number
+    max: Number
+    unit: str
+
+
+class FoundRepeats(SummaryTable):
+    """repeats, of a time history or of a fragility study."""
+
+    peaks: dict[str, FoundSpread | None] | None = None
+    runs: Count | None = None
+    collapsed: Count | None = None
+    still_moving: Count | None = None
+    dispersion: dict[str, Number] | None = None
+    collapse_intensities: list[list[Maybe]] | None = None
+
+
+class FoundTurn(SummaryTable):
+    """turning_points.N."""
+
+    load: Number
+    displacement: Number
+    live_displacement: Number = 0.0
+    controlled: Number = 0.0
+
+
+class FoundLoad(SummaryTable):
+    """capacity_curve.loads_at.N."""
+
+    load: Maybe
+    displacement: Number
+
+
+class FoundSystem(SummaryTable):
+    """capacity_curve.bilinear."""
+
+    drop: Number
+    ductility: Number
+    softened: bool
+    ultimate_displacement: Number
+    yield_displacement: Number
+    yield_load: Number
+
+
+class FoundCurve(SummaryTable):
+    """capacity_curve."""
+
+    displacements: list[Number]
+    loads: list[Number]
+    last_displacement: Number
+    last_load: Number
+    peak_displacement: Number
+    peak_load: Number
+    loads_at: list[FoundLoad] | None = None
+    bilinear: FoundSystem | None = None
+    residual_share: Maybe = None
+    of: str | None = None
+
+
+class FoundCheck(SummaryTable):
+    """check, of a spectrum."""
+
+    method: str
+    period: Number
+    target_displacement: Number
+    displacement_capacity: Number
+    demand_over_capacity: Number
+    ground_acceleration_at_capacity: Number
+    force_ratio: Number = 0.0
+    activation_acceleration: Number = 0.0
+    required_acceleration: Number = 0.0
+    linear_demand_over_capacity: Number = 0.0
+
+
+class FoundLoop(SummaryTable):
+    """loops.N."""
+
+    energy: Number
+    damping: Number
+
+
+class FoundLimits(SummaryTable):
+    """limit_analysis."""
+
+    associated: Maybe = None
+    associated_back: Maybe = None
+    associated_bounds: Range | None = None
+    associated_status: str | None = None
+    associated_head_friction: Maybe = None
+    non_associated: Maybe = None
+    non_associated_residual: Maybe = None
+    non_associated_at_least: Maybe = None
+    least: Maybe = None
+    lower_bound: Maybe = None
+    seconds: Number = 0.0
+    heads: str = ""
+    impossible_at: Maybe = None
+    carried_at: Maybe = None
+    note: str = ""
+
+
+class FoundCount(SummaryTable):
+    """How many blocks, and the first of them by name."""
+
+    count: Count
+    first: list[Any]
+
+
+class FoundReference(SummaryTable):
+    """reference, or one of several."""
+
+    value: Number | bool | str | list[Number]
+    tolerance: Maybe
+    passed: bool
+    found: Number | bool | str | list[Number] | None = None
+    quantity: str = ""
+    kind: str = ""
+    missed: str = ""
+    problem: str = ""
+    displacements: list[Number] | None = None
+    mean_error: Maybe = None
+    largest_error: Maybe = None
+
+
+class FoundRun(SummaryTable):
+    """runs.N, of a safety analysis."""
+
+    value: Number
+    stands: bool | None
+    displacement: Maybe = None
+    why: str = ""
+
+
+class FoundFragility(SummaryTable):
+    """curve, of a fragility study."""
+
+    intensity: list[Number]
+    share: list[Maybe]
+    low: list[Maybe] | None = None
+    high: list[Maybe] | None = None
+
+
+class FoundConfidence(SummaryTable):
+    """confidence, of a fragility study."""
+
+    level: Number
+    median: Range
+    dispersion: Range
+
+
+class FoundGap(SummaryTable):
+    """non_monotone.N, of a fragility study."""
+
+    record: str
+    structure: Count
+    collapsed: Number
+    survived: list[Number]
+
+
+class FoundReach(SummaryTable):
+    """reached, by a run that was interrupted."""
+
+    stage: str
+    load: Number = 0.0
+    displacement: Number
+    time: Number = 0.0
+
+
+class FoundHistory(SummaryTable):
+    """histories.N, of a search for a failure load."""
+
+    finished: bool
+
+
+class FoundStart(SummaryTable):
+    """start, of a search for a failure load."""
+
+    kind: str = ""
+    load: Maybe = None
+    seconds: Number = 0.0
+
+
+class FoundReweighting(SummaryTable):
+    """reweighting, in space."""
+
+    net: Number
+    sum: Number
+
+
+class FoundSprings(SummaryTable):
+    """springs, of natural modes."""
+
+    pressed: Count
+    touching: Count
+
+
+class FoundFirst(SummaryTable):
+    """first_frequency, of natural modes."""
+
+    pressed: Maybe
+    touching: Maybe
+
+
+class FoundCollapse(SummaryTable):
+    """settlement_at_collapse."""
+
+    bracket: Range
+
+
+class RunSummary(SummaryTable):
+    """All of summary.json."""
+
+    TOGETHER = {
+        "frequencies": ("total_mass", "effective_masses", "springs", "first_frequency"),
+        "collapse_intensities": ("unit_acceleration", "stood_up_to", "non_monotone", "runs", "runs_done_before",
+                                 "seconds"),
+        "median": ("dispersion",),
+        "safety_factor": ("vary",),
+        "contacts": ("joints",),
+    }  # fmt: skip
+    title: str
+    kind: str
+    status: str
+    version: str = ""
+    failure_load: Maybe = None
+    failure_load_bracket: Pair | None = None
+    failure_mode: str | None = None
+    displacement_at_failure: Maybe = None
+    equilibrium_load: Maybe = None
+    onset_of_displacements: Maybe = None
+    peak_of_curve: Maybe = None
+    curve_off_the_load: bool | None = None
+    curve_joint_stiffness: Maybe = None
+    capacity_curve: FoundCurve | None = None
+    check: FoundCheck | None = None
+    turning_points: list[FoundTurn] | None = None
+    loops: list[FoundLoop] | None = None
+    settlement_at_collapse: FoundCollapse | None = None
+    reached: FoundReach | None = None
+    histories: list[FoundHistory] | None = None
+    start: FoundStart | None = None
+    load_range: dict[str, Any] | None = None
+    vary: str | None = None
+    reduce: list[str] | None = None
+    load: Maybe = None
+    safety_factor: Maybe = None
+    critical_value: Maybe = None
+    stands_at: Maybe = None
+    fails_at: Maybe = None
+    strengths_needed: dict[str, dict[str, Number]] | None = None
+    runs: list[FoundRun] | Count | None = None
+    collapsed: bool | Count | None = None
+    collapse_time: Maybe = None
+    followed: Maybe = None
+    ending: str | None = None
+    at_rest: bool = True
+    fallen_blocks: FoundCount | None = None
+    peaks: dict[str, FoundPeak] | None = None
+    monitors: dict[str, FoundValue] | None = None
+    repeats: FoundRepeats | None = None
+    energy_shares: dict[str, Number] | None = None
+    impacts: Count | None = None
+    peak_ground_acceleration: Maybe = None
+    median: Maybe = None
+    median_between: Pair | None = None
+    dispersion: Maybe = None
+    confidence: FoundConfidence | None = None
+    curve: FoundFragility | None = None
+    levels: list[Number] | None = None
+    share: list[Maybe] | None = None
+    unit_acceleration: Maybe = None
+    collapse_intensities: list[Maybe] | None = None
+    stood_up_to: list[Maybe] | None = None
+    non_monotone: list[FoundGap] | None = None
+    runs_done_before: Count | None = None
+    seconds: Maybe = None
+    frequencies: list[Number] | None = None
+    highest_frequency: Maybe = None
+    total_mass: Maybe = None
+    effective_masses: dict[str, list[Number]] | None = None
+    springs: FoundSprings | None = None
+    first_frequency: FoundFirst | None = None
+    calibration: dict[str, Any] | None = None
+    limit_analysis: FoundLimits | None = None
+    reference: FoundReference | list[FoundReference] | None = None
+    blocks: Count | None = None
+    joints: Count | None = None
+    contacts: Count | None = None
+    steps: Count | None = None
+    solve_seconds: Maybe = None
+    energy_closure: Maybe = None
+    reweighting: FoundReweighting | None = None
+    largest_overlap: Maybe = None
+    largest_displacement: Maybe = None
+    moved_far: FoundMotion | None = None
+    no_bound: str | None = None
+    above_the_bound: FoundAbove | None = None
+    unbalanced_force: Maybe = None
+    warnings: list[str] | None = None
+    contradictions: list[str] | None = None
+    skipped: list[str] | None = None
+
+
+def check_summary(found: Any) -> dict[str, Any]:
+    """The same. Raises DamagedResults where it is no summary of a run."""
+    if not isinstance(found, dict):
+        raise DamagedResults("summary.json is not a table")
+    try:
+        read = RunSummary.model_validate(found)
+    except ValidationError as error:
+        raise DamagedResults(_words(error, found)) from None
+    _check_together(read, ())
+    for name, table in (found.get("monitors") or {}).items():
+        if table.get("unit", "m") not in MONITOR_UNITS.values():
+            raise DamagedResults(f"summary.json: {dotted(('monitors', name, 'unit'))} is {table['unit']!r}, no unit")
+    return found
+
+
+def _words(error: ValidationError, found: Any) -> str:
+    """The first mistake: where it is, and what is wrong."""
+    first = error.errors(include_url=False, include_input=False, include_context=False)[0]
+    path: list[str | int] = []
+    for key in first["loc"]:  # pydantic names the choice that it tried as well
+        inside = key in found if isinstance(found, dict) else isinstance(found, list) and key in range(len(found))
+        if not inside and first["type"] != "missing":
+            break
+        path.append(key)
+        found = found[key] if inside else None
+    what = f"summary.json: {dotted(tuple(path))}"
+    if first["type"] == "missing":
+        return f"{what} is missing"
+    kind = KINDS.get(first["type"])
+    return f"{what} is not {kind}" if kind and len(path) == len(first["loc"]) else f"{what} is not what it must be"
+
+
+def _check_together(table: SummaryTable, path: tuple[str | int, ...]) -> None:
+    """Raises DamagedResults where a key has a value, and one that comes along with it has none."""
+    for key, others in table.TOGETHER.items():
+        for other in others if getattr(table, key) else ():
+            if getattr(table, other) is None:
+                raise DamagedResults(f"summary.json: {dotted((*path, other))} is missing")
+    for name in type(table).model_fields:
+        value = getattr(table, name)
+        if isinstance(value, SummaryTable):
+            _check_together(value, (*path, name))

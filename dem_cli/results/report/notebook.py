@@ -1,0 +1,41 @@
+"""Results in a notebook: the answer of a run and its collapse as a player, a page in a frame below the cell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from html import escape
+from typing import Any
+
+from dem_cli.results.output.reader import Results
+from dem_cli.results.report.facts import KIND_TITLES, answer
+from dem_cli.results.report.page import render
+from dem_cli.results.report.view import view
+
+MOST_BYTES = 2_000_000  # of all frames: a notebook keeps what it shows, once for each cell
+HEIGHT = 640  # pixels, where the page cannot say how high it is
+
+
+def cell(results: Results, summary: Mapping[str, Any], readable: bool) -> str:
+    """HTML of a frame that loads nothing. readable: whether frames can still be read; else the answer stands alone."""
+    scene = view(results, MOST_BYTES) if readable else None
+    text = render(
+        {"view": scene, "charts": []},
+        brief=True,
+        title=str(summary.get("title") or "A run that was stopped"),
+        kind=KIND_TITLES.get(results.kind, "Run"),
+        answer=answer(summary),
+        verdicts=[],
+        warnings=[str(text) for text in summary.get("warnings") or ()],
+        rows=[],
+        checks=[],
+        model=[],
+        numbers=[],
+        scene=scene,
+        charts=[],
+        pictures=[],
+        case="",
+        version=summary.get("version", "–"),
+        runs=None,
+    )
+    height = HEIGHT if scene else HEIGHT // 3
+    return f'<iframe srcdoc="{escape(text)}" width="100%" height="{height}" style="border: 0"></iframe>'
