@@ -136,7 +136,9 @@ class Parameters:
         unknown = values.keys() - self.declared.keys()
         missing = {name for name, one in self.declared.items() if one.default is REQUIRED} - values.keys()
         if unknown or missing:
-            raise TypeError(f"{type(self).__name__}: unknown {sorted(unknown)}, missing {sorted(missing)}")
+            said = [f"'{name}' is no parameter" for name in sorted(unknown)]
+            said += [f"'{name}' is missing" for name in sorted(missing)]
+            raise TypeError(f"{type(self).__name__}: {', '.join(said)} (there are {', '.join(self.declared)})")
         vars(self).update({name: one.default for name, one in self.declared.items()} | values, _given=frozenset(values))
         try:
             for name, value in values.items():

@@ -55,6 +55,10 @@ class StartBound:
         self.why_not: str | None = None
         self.asked = bool(getattr(job.case.analysis, "limit", False))
 
+    def upper(self) -> float | None:
+        """What rigid blocks carry at most in the geometry of the start; None: nothing is known."""
+        return None if self.loads is None else self.loads.associated.upper
+
     @cached_property
     def loads(self) -> LimitLoads | None:
         """Limit analysis of the start, with the path where the case asks for it; None, with `why_not`, without any."""

@@ -14,11 +14,12 @@ from dem_cli.analyses import curve_answers
 from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
 from dem_cli.analyses.curve_tracing import CurveTracing
 from dem_cli.analyses.ensembles.case_job import CaseJob
-from dem_cli.analyses.pushover import INTERRUPTED, answer, buckling
+from dem_cli.analyses.pushover import answer
 from dem_cli.core.dynamics.stability import standing
 from dem_cli.core.engine.job import Outcome
 from dem_cli.core.engine.joint_summary import END, LAST_EQUILIBRIUM, joint_state
 from dem_cli.core.engine.settings import DEFAULT, Settings
+from dem_cli.core.failure_search import INTERRUPTED, buckling
 from dem_cli.core.model.model import Model
 from dem_cli.core.records.ports import Observer
 from dem_cli.core.statics import softer_joints

@@ -15,6 +15,7 @@ from dem_cli.core.engine.settings import DEFAULT
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 ROOMS = ("core/limit", "core/engine", "core/statics", "core/dynamics", "analyses")
 SOURCES = [path for room in ROOMS for path in sorted((PACKAGE / room).rglob("*.py"))]
+SOURCES += sorted((PACKAGE / "core").glob("*.py"))
 DEFAULTS = {"DEFAULT", "DEFAULT_LIMIT"}
 
 
@@ -121,4 +122,4 @@ def test_settings_are_handed_on(path):
 
 
 def test_there_are_settings_to_hand_on():
-    assert {"Simulation", "Job.start", "limit_load", "joint_properties"} <= expecting().keys()
+    assert {"Simulation", "Job.start", "associated_limit", "joint_properties"} <= expecting().keys()

@@ -20,7 +20,7 @@ from dem_cli.masonry.assembly.solver_request import solver_request
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.core.engine.simulation import Simulation
-    from dem_cli.core.limit.matrices import Structure
+    from dem_cli.core.limit.matrices import LimitStructure
     from dem_cli.core.model.model import Model
 
 
@@ -118,7 +118,7 @@ def _carries(case: Case, model: Model, moved: Simulation | None, near: float | N
     return carried(_under_load(structure, case), frictional(friction), settings.limit.associated)[0]
 
 
-def _under_load(structure: Structure, case: Case) -> Structure:
+def _under_load(structure: LimitStructure, case: Case) -> LimitStructure:
     """The structure with the constant load among its dead ones; a turned table has less of them."""
     load = case.analysis.constant_load
     share = 1.0 / np.sqrt(1.0 + load**2) if case.analysis.pattern == "tilt" else 1.0

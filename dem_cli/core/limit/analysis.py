@@ -13,9 +13,9 @@ from dem_cli.core.contact.geometry import geometry_of
 from dem_cli.core.contact.joints import JointProperties, only_points
 from dem_cli.core.contact.start import TOUCHING_GAP, bodies_at_rest, joints_of_start
 from dem_cli.core.laws.law import Law
-from dem_cli.core.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load, slides, work_of_friction
+from dem_cli.core.limit.associated import FALLS, LOCKED, OK, LimitLoad, associated_limit, slides, work_of_friction
 from dem_cli.core.limit.cone import envelope_of, friction_of, steep
-from dem_cli.core.limit.matrices import NO_LINKS, Structure, structure_of
+from dem_cli.core.limit.matrices import NO_LINKS, LimitStructure, structure_of
 from dem_cli.core.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.core.model.model import Model
 from dem_cli.core.model.scales import largest_structure, smallest_edge
@@ -38,7 +38,7 @@ SETTLED = (2,)  # dimensions in which LOCKED leaves no question: out of plane jo
 class LimitLoads(NamedTuple):
     """Failure loads of one structure by limit analysis."""
 
-    structure: Structure
+    structure: LimitStructure
     friction: np.ndarray  # coefficient of every point [-], (n_points,)
     associated: LimitLoad  # joints dilate as they slide: an upper bound
     non_associated: Path | None  # joints do not; None where not asked for, or where the first answer leaves no question
@@ -118,7 +118,7 @@ def limit_loads(
     near = TOUCHING_GAP if settings.touching is None else settings.touching
     structure = start_structure(model, properties, law, near=near)
     strength = envelope_of(structure.joints, law, heads_frictionless, bonds=structure.bonds)
-    associated = limit_load(structure, strength, settings.associated)
+    associated = associated_limit(structure, strength, settings.associated)
     found = LimitLoads(structure, strength.friction, associated, None, time.perf_counter() - begun, None)
     try:
         friction = friction_of(structure.joints, law, heads_frictionless)
@@ -169,7 +169,7 @@ def _require_known(model: Model, bounds: Collection[str]) -> None:
 
 
 def _path(
-    structure: Structure, friction: np.ndarray, associated: LimitLoad, progress: Progress, settings: LimitSettings
+    structure: LimitStructure, friction: np.ndarray, associated: LimitLoad, progress: Progress, settings: LimitSettings
 ) -> Path:
     """The path to the load of joints that do not dilate.
 
@@ -266,7 +266,7 @@ def start_structure(
     law: Law | None = None,
     bodies: Bodies | None = None,
     near: float = TOUCHING_GAP,
-) -> Structure:
+) -> LimitStructure:
     """The structure with the joints of its first place, all of them plane, or of where blocks have moved to.
 
     Points at their ends are enough for joints with friction alone; where tension, cohesion or crushing of the `law` are
@@ -302,7 +302,7 @@ def load_where_it_rests(
     for near in gaps_that_touch(model, touch):
         structure = start_structure(model, properties, law, bodies, near)
         strength = envelope_of(structure.joints, law, bonds=structure.bonds)
-        found = limit_load(structure, strength, settings.associated)
+        found = associated_limit(structure, strength, settings.associated)
         if found.upper is not None:
             break
     return found
@@ -326,4 +326,4 @@ def load_of_points(
 ) -> LimitLoad:
     """The associated load on some points of the joints of the start; closed: which ones carry, (n_points,) bool."""
     among = only_points(joints, closed)
-    return limit_load(structure_of(model, among), envelope_of(among, law), settings.associated)
+    return associated_limit(structure_of(model, among), envelope_of(among, law), settings.associated)

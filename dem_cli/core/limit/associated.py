@@ -18,7 +18,7 @@ import numpy as np
 
 from dem_cli.core.arithmetic.products import product
 from dem_cli.core.laws.envelope import Envelope
-from dem_cli.core.limit.matrices import Structure
+from dem_cli.core.limit.matrices import LimitStructure
 from dem_cli.core.limit.program import (
     ANSWERED,
     IMPOSSIBLE,
@@ -71,7 +71,7 @@ class LimitLoad(NamedTuple):
 
 
 def slides(
-    structure: Structure,
+    structure: LimitStructure,
     friction: np.ndarray,
     found: LimitLoad,
     settings: AssociatedSettings = DEFAULT_LIMIT.associated,
@@ -105,15 +105,15 @@ def sliding_share(
     return max(found.gap, settings.least_gap) / least if least > 0.0 else float("inf")
 
 
-def work_of_friction(structure: Structure, friction: np.ndarray, found: LimitLoad) -> np.ndarray:
+def work_of_friction(structure: LimitStructure, friction: np.ndarray, found: LimitLoad) -> np.ndarray:
     """What friction takes at every point in the mechanism of a load that was found [N m], (n_points,)."""
     motion = structure.compatibility @ found.velocities.ravel()[structure.free]
     slips = np.linalg.norm(motion.reshape(-1, structure.model.dimension)[:, 1:], axis=1)
     return friction * found.normal * slips
 
 
-def limit_load(
-    structure: Structure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
+def associated_limit(
+    structure: LimitStructure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
 ) -> LimitLoad:
     """The largest multiplier of the live loads that the structure carries with associated flow.
 
@@ -133,11 +133,11 @@ def limit_load(
 
 
 def carried(
-    structure: Structure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
+    structure: LimitStructure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
 ) -> tuple[bool | None, float]:
     """Whether any forces inside the envelope carry the dead loads, and the error of the proof; None: not known.
 
-    strength: as in limit_load. False is a proof that nothing of this kind stands; True is none that it does: joints
+    strength: as in associated_limit. False is a proof that nothing of this kind stands; True is none that it does: joints
     that do not dilate may fail all the same.
     """
     answer = _first_good(program_of(structure, strength, settings), standing, _judge_standing)

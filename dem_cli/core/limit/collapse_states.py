@@ -24,7 +24,7 @@ from scipy.sparse import bmat, csr_matrix, diags, identity, vstack
 
 from dem_cli.core.laws.envelope import Envelope
 from dem_cli.core.limit.joint_forces import SOLVED, JointForces
-from dem_cli.core.limit.matrices import Structure
+from dem_cli.core.limit.matrices import LimitStructure
 from dem_cli.core.limit.settings import LeastSettings
 from dem_cli.interrupts import look
 
@@ -51,7 +51,7 @@ class StateSearch(NamedTuple):
 class CollapseStates:
     """The program of a structure; unknowns: N, T, λ, u, a, q, s₊, s₋, then the choices of a, q, s₊, s₋."""
 
-    def __init__(self, structure: Structure, strength: Envelope, upper: float, settings: LeastSettings) -> None:
+    def __init__(self, structure: LimitStructure, strength: Envelope, upper: float, settings: LeastSettings) -> None:
         self.settings, self.structure = settings, structure
         self.statics = statics = JointForces(structure, strength)
         n_dof = structure.n_dof

@@ -25,7 +25,7 @@ from scipy.sparse import csr_matrix, diags, vstack
 
 from dem_cli.core.contact.compatibility import free_columns, relative_motion
 from dem_cli.core.kernels.records import Joints
-from dem_cli.core.limit.matrices import NO_LINKS, Structure
+from dem_cli.core.limit.matrices import NO_LINKS, LimitStructure
 from dem_cli.core.limit.newton_matrix import FrontFactors, NewtonMatrix, PointRows
 from dem_cli.core.limit.settings import DEFAULT_LIMIT, LimitSettings, PathSettings
 from dem_cli.core.limit.slip_cones import SlipCones
@@ -93,7 +93,7 @@ class Elastic:
 
     def __init__(
         self,
-        structure: Structure,
+        structure: LimitStructure,
         friction: np.ndarray,
         settings: LimitSettings = DEFAULT_LIMIT,
         gaps: np.ndarray | None = None,
@@ -191,7 +191,7 @@ class Elastic:
         """How far they slide, as shear forces are numbered."""
         return (self.motion @ displacements)[self.n_points :]
 
-    def _points(self, structure: Structure) -> PointRows:
+    def _points(self, structure: LimitStructure) -> PointRows:
         """Motions at every point by scaled degrees of freedom."""
         columns = free_columns(structure.model, structure.joints)
         scale = np.where(columns < 0, 0.0, np.append(self.columns, 0.0)[columns])

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags, hstack, identity, vstack
 
 from dem_cli.core.laws.envelope import Envelope
-from dem_cli.core.limit.matrices import Structure
+from dem_cli.core.limit.matrices import LimitStructure
 from dem_cli.core.limit.program import units
 from dem_cli.interrupts import look
 
@@ -41,7 +41,7 @@ class JointStrength(NamedTuple):
 class JointForces:
     """Linear programs over the forces of a structure; `joint` is the joint of each point, (n_points,)."""
 
-    def __init__(self, structure: Structure, strength: Envelope) -> None:
+    def __init__(self, structure: LimitStructure, strength: Envelope) -> None:
         self.structure, (self.weight, self.load) = structure, units(structure)
         kept, self.joint = np.unique(structure.joints.owners, return_inverse=True)
         self.n_points, self.n_joints = len(self.joint), len(kept)

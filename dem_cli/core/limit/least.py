@@ -13,7 +13,7 @@ import numpy as np
 
 from dem_cli.core.laws.envelope import Envelope
 from dem_cli.core.limit.collapse_states import CollapseState, CollapseStates, StateSearch
-from dem_cli.core.limit.matrices import Structure
+from dem_cli.core.limit.matrices import LimitStructure
 from dem_cli.core.limit.settings import DEFAULT_LIMIT, LeastSettings
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class LeastLoad(NamedTuple):
 
 
 def least_load(
-    structure: Structure,
+    structure: LimitStructure,
     strength: Envelope,
     upper: float,
     path: Path | None = None,

@@ -55,7 +55,7 @@ class Links(NamedTuple):
         return csr_matrix(place @ self.elongation), envelope(n, tension=most, compression=-least)
 
 
-class Structure(NamedTuple):
+class LimitStructure(NamedTuple):
     """A structure as limit analysis sees it: matrices, loads, and what makes their numbers comparable."""
 
     model: Model
@@ -90,10 +90,10 @@ class Structure(NamedTuple):
         return forces / self.scales
 
 
-def structure_of(model: Model, joints: Joints, bonds: np.ndarray | None = None) -> Structure:
+def structure_of(model: Model, joints: Joints, bonds: np.ndarray | None = None) -> LimitStructure:
     """Matrices and loads of a model whose joints are those of the start (contact.start.joints_of_start).
 
-    bonds: as Structure.bonds; None: of all points.
+    bonds: as LimitStructure.bonds; None: of all points.
     """
     d, n_dof = model.dimension, model.dead_loads.shape[1]
     blocks = np.flatnonzero(~model.fixed)
@@ -103,7 +103,7 @@ def structure_of(model: Model, joints: Joints, bonds: np.ndarray | None = None) 
     scales[:, d:] *= model.shapes.radii[blocks, None]
     bonds = np.ones(len(joints.kn), bool) if bonds is None else bonds
     dead, live = (np.where(model.held[blocks], 0.0, loads) for loads in (dead, live))
-    return Structure(
+    return LimitStructure(
         model, joints, free, compatibility(model, joints), dead.ravel().copy(), live.ravel().copy(), scales.ravel(),
         bonds, links_of(model),
     )  # fmt: skip

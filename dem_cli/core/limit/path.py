@@ -22,7 +22,7 @@ import numpy as np
 from dem_cli.core.arithmetic.products import product
 from dem_cli.core.limit.elastic import Elastic, State
 from dem_cli.core.limit.interior import Increment
-from dem_cli.core.limit.matrices import Structure
+from dem_cli.core.limit.matrices import LimitStructure
 from dem_cli.core.limit.settings import DEFAULT_LIMIT, LimitSettings, PathSettings
 
 OK = "ok"
@@ -95,7 +95,7 @@ class Path:
 
 
 def trace(
-    structure: Structure,
+    structure: LimitStructure,
     friction: np.ndarray,
     plateau: float | None = None,
     effort: float | None = None,
@@ -220,7 +220,7 @@ class Walk:
 
 def _follow(
     path: Path,
-    structure: Structure,
+    structure: LimitStructure,
     problem: Elastic,
     state: State,
     plateau: float,
@@ -317,7 +317,7 @@ def compliance(problem: Elastic, state: State) -> float:
     return float(product(problem.live, problem.elastic(share).solve(problem.live)))
 
 
-def _polish(path: Path, structure: Structure, problem: Elastic, stride: Stride, reached: float) -> None:
+def _polish(path: Path, structure: LimitStructure, problem: Elastic, stride: Stride, reached: float) -> None:
     """The increment of the highest load, solved to the end; and the one before, for the mechanism between them."""
     found = stride.increment.polished()
     if found is None or problem.residual(found, stride.before) > path.residual:
@@ -334,7 +334,7 @@ def _polish(path: Path, structure: Structure, problem: Elastic, stride: Stride, 
 
 def _keep(
     path: Path,
-    structure: Structure,
+    structure: LimitStructure,
     problem: Elastic,
     state: State,
     before: State,

@@ -23,7 +23,7 @@ from scipy.sparse import bmat, csc_matrix, csr_matrix, diags, identity, vstack
 
 from dem_cli.core.laws.envelope import Envelope
 from dem_cli.core.limit.cone import Cone, cone_of
-from dem_cli.core.limit.matrices import Structure
+from dem_cli.core.limit.matrices import LimitStructure
 from dem_cli.core.limit.settings import DEFAULT_LIMIT, AssociatedSettings
 
 ANSWERED, IMPOSSIBLE, UNBOUNDED, UNKNOWN = "answered", "impossible", "unbounded", "unknown"
@@ -40,7 +40,7 @@ KINDS = {
 class Program(NamedTuple):
     """The program in newtons and metres, and the units in which it is solved."""
 
-    structure: Structure
+    structure: LimitStructure
     cone: Cone
     motion: csr_matrix  # G, (n_amounts, n_free)
     dead: np.ndarray  # dead loads of the free degrees of freedom, with the forces Cone.first [N, N m], (n_free,)
@@ -67,7 +67,7 @@ class ProgramSolution(NamedTuple):
 
 
 def program_of(
-    structure: Structure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
+    structure: LimitStructure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
 ) -> Program:
     """The program of a structure with live loads; its links are points behind those of `strength`."""
     d, compatibility = structure.model.dimension, structure.compatibility
@@ -83,7 +83,7 @@ def program_of(
     return Program(structure, cone, motion, constant, n_blocks, weight, load, settings)
 
 
-def units(structure: Structure) -> tuple[float, float]:
+def units(structure: LimitStructure) -> tuple[float, float]:
     """Mean weight of a block that can move [N], and the multiplier that makes live loads as large as the dead ones."""
     d, n_dof = structure.model.dimension, structure.n_dof
     forces = (loads.reshape(-1, n_dof)[:, :d] for loads in (structure.dead, structure.live))

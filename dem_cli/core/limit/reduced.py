@@ -26,7 +26,7 @@ import numpy as np
 
 from dem_cli.core.laws.envelope import Envelope
 from dem_cli.core.limit.joint_forces import SOLVED, JointForces
-from dem_cli.core.limit.matrices import Structure
+from dem_cli.core.limit.matrices import LimitStructure
 from dem_cli.core.limit.settings import DEFAULT_LIMIT, ReducedSettings
 
 OK, NONE = "ok", "no load proved: the reduced domain does not carry the dead loads, or carries any load"
@@ -55,7 +55,7 @@ class LowerBound(NamedTuple):
 
 
 def lower_bound(
-    structure: Structure,
+    structure: LimitStructure,
     strength: Envelope,
     residual: Envelope,
     associated: float,
@@ -71,7 +71,9 @@ def lower_bound(
 class ReducedDomain:
     """Linear programs inside the strength of the joints (`most`), and inside the reduced domain of what they keep."""
 
-    def __init__(self, structure: Structure, strength: Envelope, residual: Envelope, settings: ReducedSettings) -> None:
+    def __init__(
+        self, structure: LimitStructure, strength: Envelope, residual: Envelope, settings: ReducedSettings
+    ) -> None:
         self.settings = settings
         self.most = JointForces(structure, strength)
         self.kept = JointForces(structure, residual)

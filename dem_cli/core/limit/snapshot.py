@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.core.geometry.rotation import quaternions, swept
-from dem_cli.core.limit.matrices import Structure
+from dem_cli.core.limit.matrices import LimitStructure
 from dem_cli.core.model.model import Model
 from dem_cli.core.records.frames import STATES, ContactRecord, Frame
 
@@ -27,7 +27,7 @@ class Collapse(NamedTuple):
     steps: int = 0  # of the solver
 
 
-def frame(structure: Structure, collapse: Collapse, tilting: bool = False) -> Frame:
+def frame(structure: LimitStructure, collapse: Collapse, tilting: bool = False) -> Frame:
     """A state of collapse as a snapshot: its forces, and the structure moved a little along its mechanism.
 
     Largest motion of a block: SHOWN_MOTION of the largest radius; velocities are the mechanism as it is. tilting: the
@@ -52,7 +52,7 @@ def _amplitude(model: Model, velocities: np.ndarray) -> float:
     return SHOWN_MOTION * float(radii[~model.fixed].max()) / fastest if fastest > 0.0 else 0.0
 
 
-def _contacts(structure: Structure, collapse: Collapse, moved: np.ndarray, factor: float) -> ContactRecord:
+def _contacts(structure: LimitStructure, collapse: Collapse, moved: np.ndarray, factor: float) -> ContactRecord:
     """Forces and motion of every point."""
     joints, d = structure.joints, structure.model.dimension
     owner = joints.owners
@@ -76,7 +76,7 @@ def _contacts(structure: Structure, collapse: Collapse, moved: np.ndarray, facto
     )
 
 
-def _carried(structure: Structure, moved: np.ndarray, blocks: np.ndarray) -> np.ndarray:
+def _carried(structure: LimitStructure, moved: np.ndarray, blocks: np.ndarray) -> np.ndarray:
     """How far its block takes every point along [m], to first order, (n_points, d)."""
     d, arms = structure.model.dimension, structure.joints.points - structure.model.centroids[blocks]
     return moved[blocks, :d] + swept(moved[blocks, d:], arms)

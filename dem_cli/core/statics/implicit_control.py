@@ -33,7 +33,7 @@ class PosedIncrement(NamedTuple):
     problem: Elastic
     before: State  # forces of the last state; no displacements yet
     kept: np.ndarray  # points that are any, (n_points,) bool
-    on_blocks: Callable[[np.ndarray], np.ndarray]  # limit/matrices.py: Structure
+    on_blocks: Callable[[np.ndarray], np.ndarray]  # limit/matrices.py: LimitStructure
 
 
 def why_not(sim: Simulation) -> str | None:

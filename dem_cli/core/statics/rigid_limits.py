@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from dem_cli.core.engine.simulation import Simulation
     from dem_cli.core.limit.analysis import LimitLoads
     from dem_cli.core.limit.associated import LimitLoad
-    from dem_cli.core.limit.matrices import Structure
+    from dem_cli.core.limit.matrices import LimitStructure
     from dem_cli.core.limit.path import Path
     from dem_cli.core.statics.implicit_history import LoadHistory
 
@@ -48,8 +48,8 @@ class RigidLimits:
             self.why_not = "there are no dead loads beside the live ones"
 
     @cached_property
-    def _matrices(self) -> tuple[Structure, np.ndarray] | None:
-        """Structure and friction of its points; None where limit analysis does not apply."""
+    def _matrices(self) -> tuple[LimitStructure, np.ndarray] | None:
+        """The structure and friction of its points; None where limit analysis does not apply."""
         if self.why_not is not None:
             return None
         self.job.clock.imported("dem_cli.core.limit.analysis")
@@ -75,11 +75,11 @@ class RigidLimits:
         return found
 
     @stage
-    def _limit_load(self, structure: Structure, friction: np.ndarray) -> LimitLoad:
+    def _limit_load(self, structure: LimitStructure, friction: np.ndarray) -> LimitLoad:
         from dem_cli.core.laws.envelope import frictional
-        from dem_cli.core.limit.associated import limit_load
+        from dem_cli.core.limit.associated import associated_limit
 
-        return limit_load(structure, frictional(friction), self.job.settings.limit.associated)
+        return associated_limit(structure, frictional(friction), self.job.settings.limit.associated)
 
     @cached_property
     def without_head_friction(self) -> LimitLoad | None:
@@ -137,7 +137,7 @@ class RigidLimits:
         return found
 
     @stage
-    def _traced(self, structure: Structure, friction: np.ndarray) -> Path:
+    def _traced(self, structure: LimitStructure, friction: np.ndarray) -> Path:
         from dem_cli.core.limit.path import trace
 
         settings, clock = self.job.settings, self.job.clock
@@ -168,7 +168,7 @@ class RigidLimits:
         return found
 
     @stage
-    def _followed(self, structure: Structure, friction: np.ndarray, small: bool) -> LoadHistory | None:
+    def _followed(self, structure: LimitStructure, friction: np.ndarray, small: bool) -> LoadHistory | None:
         from dem_cli.core.limit.elastic import Elastic
         from dem_cli.core.statics.implicit_history import ImplicitHistory
 

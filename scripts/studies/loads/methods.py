@@ -17,9 +17,9 @@ from dem_cli.core.engine.properties import joint_properties, law_of
 from dem_cli.core.laws.envelope import frictional
 from dem_cli.core.limit import path as paths
 from dem_cli.core.limit.analysis import start_structure
-from dem_cli.core.limit.associated import OK, limit_load
+from dem_cli.core.limit.associated import OK, associated_limit
 from dem_cli.core.limit.cone import friction_of
-from dem_cli.core.limit.matrices import Structure
+from dem_cli.core.limit.matrices import LimitStructure
 from dem_cli.core.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.core.model.model import Model
 from dem_cli.core.records.ports import Observer
@@ -71,7 +71,7 @@ def measure(file: Path, overrides: Sequence[str] = (), default: bool = True) -> 
     properties, law = joint_properties(solver_request(case), model), law_of(solver_request(case))
     structure = start_structure(model, properties)
     friction = friction_of(structure.joints, law)
-    bound, seconds = timed(lambda: limit_load(structure, frictional(friction)))
+    bound, seconds = timed(lambda: associated_limit(structure, frictional(friction)))
     associated = MethodLoad(bound.status, bound.multiplier, bound.upper, seconds=seconds)
     row = CaseLoads(f"{file.parent.name}/{file.stem}", int((~model.fixed).sum()), associated)
     if bound.status == OK:
@@ -83,7 +83,7 @@ def measure(file: Path, overrides: Sequence[str] = (), default: bool = True) -> 
     return row
 
 
-def by_path(structure: Structure, friction: np.ndarray, settings: LimitSettings = DEFAULT_LIMIT) -> MethodLoad:
+def by_path(structure: LimitStructure, friction: np.ndarray, settings: LimitSettings = DEFAULT_LIMIT) -> MethodLoad:
     """The load of joints that do not dilate: where it grows no more, and the highest on the way there."""
     path, seconds = timed(lambda: paths.trace(structure, friction, settings=settings))
     ok = path.status == paths.OK

@@ -12,7 +12,7 @@ from engine.limits import on_a_base, tower
 from dem_cli.core.engine.properties import joint_properties, law_of
 from dem_cli.core.limit import fronts
 from dem_cli.core.limit.analysis import start_structure
-from dem_cli.core.limit.associated import FALLS, LOCKED, OK, limit_load
+from dem_cli.core.limit.associated import FALLS, LOCKED, OK, associated_limit
 from dem_cli.core.limit.cone import envelope_of
 from dem_cli.core.limit.settings import DEFAULT_LIMIT
 
@@ -27,7 +27,7 @@ def both(case):
     law = law_of(made.request)
     structure = start_structure(made.model, joint_properties(made.request, made.model), law)
     strength = envelope_of(structure.joints, law, bonds=structure.bonds)
-    return [limit_load(structure, strength, settings) for settings in (CLARABEL, ON_FRONTS)]
+    return [associated_limit(structure, strength, settings) for settings in (CLARABEL, ON_FRONTS)]
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.6, 1.1])

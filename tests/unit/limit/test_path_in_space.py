@@ -15,7 +15,7 @@ from dem_cli.core.geometry.polygon import properties
 from dem_cli.core.limit.analysis import limit_loads, start_structure
 from dem_cli.core.limit.cone import friction_of
 from dem_cli.core.limit.elastic import Elastic, cones_of
-from dem_cli.core.limit.matrices import Structure, structure_of
+from dem_cli.core.limit.matrices import LimitStructure, structure_of
 from dem_cli.core.limit.path import OK, Path, _advance, at_rest, compliance, trace
 from dem_cli.core.limit.settings import PathSettings
 from dem_cli.core.limit.slip_cones import SlipCones
@@ -28,12 +28,12 @@ def horizontal(azimuth_deg: float) -> np.ndarray:
     return np.array([np.cos(np.radians(azimuth_deg)), np.sin(np.radians(azimuth_deg)), 0.0])
 
 
-def structure(solids, faces, push, **more) -> Structure:
+def structure(solids, faces, push, **more) -> LimitStructure:
     model = model_of(solids, push, **more)
     return structure_of(model, joints_of(model, faces))
 
 
-def followed(made: Structure, friction: float, **more) -> Path:
+def followed(made: LimitStructure, friction: float, **more) -> Path:
     path = trace(made, np.full(len(made.joints.kn), friction), **more)
     assert path.status == OK
     return path
@@ -102,7 +102,7 @@ def test_planar_twins(name):
     assert other.normal.reshape(-1, 2).sum(axis=1) == pytest.approx(one.normal, abs=1e-4 * one.normal.max())
 
 
-def held_panel(azimuth: float = 70.0) -> Structure:
+def held_panel(azimuth: float = 70.0) -> LimitStructure:
     """Rough, frictional, pushed out of its plane and along it."""
     return structure(*panel(4, 3, (0.5, 0.4, 0.25)), horizontal(azimuth))
 

@@ -20,9 +20,9 @@ from synthetic.solids import Face, Solid, box, extruded, joints_of, model_of, pa
 from dem_cli.core.engine.properties import joint_properties, law_of
 from dem_cli.core.laws.envelope import Envelope, envelope, frictional
 from dem_cli.core.limit.analysis import start_structure
-from dem_cli.core.limit.associated import FALLS, LOCKED, OK, LimitLoad, limit_load
+from dem_cli.core.limit.associated import FALLS, LOCKED, OK, LimitLoad, associated_limit
 from dem_cli.core.limit.cone import envelope_of
-from dem_cli.core.limit.matrices import Structure, structure_of
+from dem_cli.core.limit.matrices import LimitStructure, structure_of
 from dem_cli.core.limit.program import factorised_by, program_of
 from dem_cli.core.limit.settings import DEFAULT_LIMIT
 
@@ -36,30 +36,32 @@ def horizontal(azimuth_deg: float) -> np.ndarray:
     return np.array([np.cos(np.radians(azimuth_deg)), np.sin(np.radians(azimuth_deg)), 0.0])
 
 
-def structure(solids: Sequence[Solid], faces: Sequence[Face], push: Sequence[float], **more) -> Structure:
+def structure(solids: Sequence[Solid], faces: Sequence[Face], push: Sequence[float], **more) -> LimitStructure:
     model = model_of(solids, push, **more)
     return structure_of(model, joints_of(model, faces))
 
 
-def on_ground(corners: np.ndarray, height: float, push: Sequence[float]) -> Structure:
+def on_ground(corners: np.ndarray, height: float, push: Sequence[float]) -> LimitStructure:
     """One prism of weight one on these corners, pushed at half its height."""
     return structure(*prism_on(corners, height), push)
 
 
-def flat_block(push: Sequence[float]) -> Structure:
+def flat_block(push: Sequence[float]) -> LimitStructure:
     return on_ground(box((-0.5, 0.5), 1.0, (0.0, 0.0)), 0.1, push)
 
 
-def tall_block(push: Sequence[float]) -> Structure:
+def tall_block(push: Sequence[float]) -> LimitStructure:
     return on_ground(box((-0.5 * WIDTH, 0.5 * WIDTH), DEPTH, (0.0, 0.0)), HEIGHT, push)
 
 
-def solved(made: Structure, strength: float | Envelope) -> LimitLoad:
+def solved(made: LimitStructure, strength: float | Envelope) -> LimitLoad:
     n_points = len(made.joints.kn)
-    return limit_load(made, strength if isinstance(strength, Envelope) else frictional(np.full(n_points, strength)))
+    return associated_limit(
+        made, strength if isinstance(strength, Envelope) else frictional(np.full(n_points, strength))
+    )
 
 
-def load(made: Structure, strength: float | Envelope) -> float:
+def load(made: LimitStructure, strength: float | Envelope) -> float:
     """The multiplier, with its claims checked: bounds, forces in balance and inside the cones."""
     found = solved(made, strength)
     assert found.status == OK
@@ -148,7 +150,7 @@ def test_planar_twins(name):
     flat = start_structure(made.model, joint_properties(made.request, made.model))
     strength = envelope_of(flat.joints, law_of(made.request))
     spatial = structure_of(*extruded(flat.model, flat.joints))
-    one, other = limit_load(flat, strength), limit_load(spatial, in_pairs(strength))
+    one, other = associated_limit(flat, strength), associated_limit(spatial, in_pairs(strength))
     assert other.multiplier == pytest.approx(one.multiplier, rel=1e-9)
     assert other.velocities[:, 1] == pytest.approx(0.0, abs=1e-9 * np.abs(one.velocities).max())
 
@@ -161,7 +163,7 @@ def test_planar_twins_of_strong_joints(strength):
     flat = start_structure(made.model, joint_properties(made.request, made.model), law_of(made.request))
     limits = envelope_of(flat.joints, law_of(made.request))
     spatial = structure_of(*extruded(flat.model, flat.joints))
-    assert load(spatial, in_pairs(limits)) == pytest.approx(limit_load(flat, limits).multiplier, rel=NEAR)
+    assert load(spatial, in_pairs(limits)) == pytest.approx(associated_limit(flat, limits).multiplier, rel=NEAR)
 
 
 def in_pairs(strength: Envelope) -> Envelope:
@@ -183,7 +185,7 @@ def test_pyramids_inside_and_around_the_cone():
     assert load(made, 5.0) > 1.05 * found  # friction takes part
 
 
-def by_pyramid(made: Structure, friction: float, sides: int) -> float:
+def by_pyramid(made: LimitStructure, friction: float, sides: int) -> float:
     """The load with a pyramid of so many sides inside the cone."""
     angles = 2.0 * np.pi * np.arange(sides) / sides
     edges = np.column_stack([np.ones(sides), friction * np.cos(angles), friction * np.sin(angles)])
@@ -207,7 +209,7 @@ def test_structure_and_loads_turned_together():
 # -- joints that are stronger, and refusals ---------------------------------------------------------------------------
 
 
-def of_points(made: Structure, **values: float) -> Envelope:
+def of_points(made: LimitStructure, **values: float) -> Envelope:
     return envelope(len(made.joints.kn), **values)
 
 
@@ -271,6 +273,8 @@ def test_size_chooses_the_factorisation_and_either_finds_the_same_load():
     strength, size, found = frictional(np.full(len(made.joints.kn), 0.6)), len(made.free), {}
     for by_columns in (size - 1, size):
         settings = replace(DEFAULT_LIMIT.associated, by_columns=by_columns)
-        found[factorised_by(program_of(made, strength, settings))] = limit_load(made, strength, settings).multiplier
+        found[factorised_by(program_of(made, strength, settings))] = associated_limit(
+            made, strength, settings
+        ).multiplier
     assert sorted(found) == ["faer", "qdldl"]
     assert found["faer"] == pytest.approx(found["qdldl"], rel=1e-8)
