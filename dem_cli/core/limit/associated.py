@@ -137,8 +137,8 @@ def carried(
 ) -> tuple[bool | None, float]:
     """Whether any forces inside the envelope carry the dead loads, and the error of the proof; None: not known.
 
-    strength: as in associated_limit. False is a proof that nothing of this kind stands; True is none that it does: joints
-    that do not dilate may fail all the same.
+    strength: as in associated_limit. False is a proof that nothing of this kind stands; True is none that it does:
+    joints that do not dilate may fail all the same.
     """
     answer = _first_good(program_of(structure, strength, settings), standing, _judge_standing)
     return {OK: True, FALLS: False}.get(answer.status), answer.residual
