@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dem_cli.analyses.estimate_cost import cost_of
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.engine.automatic_stiffness import needed_ratio, ratio_of, static_ratio
 from dem_cli.core.engine.kinematics import live_scale, open_gaps_doubt, why_moving
 from dem_cli.core.engine.measures import shares_of_blocks
@@ -31,8 +32,6 @@ Rows = list[tuple[str, str]]
 LIBRARIES = 250e6  # bytes of a run of a few blocks: Python, compiled code, what is imported
 STATES = 15  # of the structure, that an analysis holds: highest equilibrium, failure, points of a curve
 COMPILING = 700e6  # bytes while the loops of time histories in space are compiled, once
-IN_SECONDS = ("time-history", "fragility")  # kinds that estimate_shaking.py knows
-VISIBLE = {"settlement": "supports move visibly", "modes": "the forces of gravity turn and shift with the blocks"}
 LARGE = "the load is raised from there, and may be “at least …, not above …”"  # of a structure that is large
 SOFTER = DEFAULT.load_search.softer
 BED = np.cos(np.pi / 4)  # a bed joint has its normal within 45° of the vertical
@@ -40,7 +39,7 @@ BED = np.cos(np.pi / 4)  # a bed joint has its normal within 45° of the vertica
 
 def describe(case: Case, model: Model) -> Rows:
     """Label and text of each line of `dem check` that needs joints."""
-    if case.analysis.kind in IN_SECONDS:
+    if kind_of(case.analysis.kind).shakes:
         return _shaking(case, model)
     request = solver_request(case)
     tilting = request.analysis.tilting
@@ -200,7 +199,7 @@ def _visible(case: Case) -> str | None:
     """Why blocks move visibly in the analysis of a case before anything fails; None: they do not."""
     if getattr(case.analysis, "control", "load") == "displacement":
         return "the live load is moved as far as the case says"
-    return VISIBLE.get(case.analysis.kind)
+    return kind_of(case.analysis.kind).moves or None
 
 
 def _kinematics(wanted: str, moving: str | None, model: Model) -> Rows:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.case.base import NOTHING
 from dem_cli.case.wording import either, show, unknown_name
 from dem_cli.errors import CaseProblem, KeyPath, dotted
@@ -17,8 +18,6 @@ SELECTING = (  # that select blocks
     "imperfection", "load", "pressure", "fill", "strain", "restraint", "settlement", "initial", "monitor"
 )  # fmt: skip
 LINKS = ("tie", "reinforcement")
-SHAKES = ("time-history", "fragility")  # kinds of analysis that take place in time
-WITH_REAL_MASSES = (*SHAKES, "modes")
 REACTIONS = ("reaction", "reaction_moment")  # quantities of monitors of what holds blocks
 OF_CUTS = ("normal_force", "shear_force", "moment", "shear_force_across", "moment_across", "torsion")  # and of cuts
 WITH_LIVE_LOADS = ("load", "pressure")
@@ -96,9 +95,9 @@ def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProbl
 
 def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
     """Monitors of reactions where blocks have real masses, as samples of a motion hold none; in modes of cuts too."""
-    if kind not in WITH_REAL_MASSES:
+    if not kind_of(kind).real_masses:
         return []
-    refused = REACTIONS if kind in SHAKES else (*REACTIONS, *OF_CUTS)
+    refused = REACTIONS if kind_of(kind).shakes else (*REACTIONS, *OF_CUTS)
     asked = [(path, table.get("quantity")) for path, table in entries(data, "monitor")]
     message = f"is not known in kind = {show(kind)}: only analyses without time follow such forces"
     return [
@@ -111,7 +110,7 @@ def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
 def weightless_joints(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
     """Joints of a time history whose stiffness goes by the weights of blocks, where these have none."""
     gravity, joints = data.get("gravity"), data.get("joints")
-    if kind not in SHAKES or isinstance(gravity, bool) or gravity != 0 or not isinstance(joints, dict):
+    if not kind_of(kind).shakes or isinstance(gravity, bool) or gravity != 0 or not isinstance(joints, dict):
         return
     for name, joint in joints.items():
         if isinstance(joint, dict) and joint.get("kn", "auto") == "auto":
@@ -125,7 +124,7 @@ def following_loads(data: dict[str, Any], analysis: dict[str, Any]) -> Iterator[
     """Loads that follow blocks where that is not known: with real masses, and as what displacement controls."""
     for path, table in entries(data, "load"):
         kind, follows = analysis.get("kind"), table.get("follows")
-        if follows is not None and kind in WITH_REAL_MASSES:
+        if follows is not None and kind_of(kind).real_masses:
             where = f"{show(follows)} is not known in kind = {show(kind)}"
             yield CaseProblem((*path, "follows"), f"{where}: loads follow blocks in analyses without time")
         lone = analysis.get("control") == "displacement" and "of" not in analysis

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.case.base import CaseModel
-from dem_cli.case.cross_references import SHAKES
 from dem_cli.case.schema import Case
 from dem_cli.case.wording import show
 from dem_cli.errors import CaseProblem, KeyPath
@@ -78,7 +78,7 @@ def doubts(case: Case) -> Iterator[CaseProblem]:
         yield CaseProblem(("gravity",), "0 leaves the blocks without weight")
     elif text := USUAL["gravity"].doubt(case.gravity):
         yield CaseProblem(("gravity",), text)
-    for table in () if case.analysis.kind in SHAKES else ("motion", "damping", "initial"):
+    for table in () if kind_of(case.analysis.kind).shakes else ("motion", "damping", "initial"):
         if getattr(case, table):
             yield CaseProblem((table,), f"not used: kind = {show(case.analysis.kind)} has no time", at_key=True)
     yield from _live_doubts(case)

@@ -20,6 +20,7 @@ from synthetic.shaking import write_shaking
 from synthetic.solid_runs import solid_frames, solid_wall, write_solid_run
 from synthetic.tumbling import write_shaken_column
 
+from dem_cli.analysis_kinds import KINDS
 from dem_cli.app.cli.main import main
 from dem_cli.core.records.frames import STATES
 from dem_cli.results.output.store import ResultWriter
@@ -345,7 +346,7 @@ def test_the_answer_of_each_kind_in_one_line(kind, found, label, value, more):
     assert facts.answer({"kind": kind, "status": "ok", **found}) == (label, value, more, "good")
 
 
-@pytest.mark.parametrize("kind", facts.KIND_TITLES)
+@pytest.mark.parametrize("kind", KINDS)
 def test_a_run_that_was_stopped_says_so(kind):
     answer = facts.answer({"kind": kind, "status": "interrupted"})
     assert "interrupted" in answer.value + answer.more

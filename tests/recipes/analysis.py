@@ -71,13 +71,16 @@ RECIPE = Recipe(
         (REGISTRY, "ANALYSES: dict[str, Analysis] = {\n", LOADER),
         (REGISTRY, FIRST, f'{FIRST}        Analysis("weight", WeightAnalysis, _weight),\n'),
         ("dem_cli/app/cli/words/console.py", ROWS, ROWS + LINE),
-        (FACTS, '"safety": "Factor of safety",', '"safety": "Factor of safety", "weight": "Weight",'),
+        (
+            "dem_cli/analysis_kinds.py",
+            '    "safety": AnalysisKind(',
+            '    "weight": AnalysisKind("Weight", rests=True),\n    "safety": AnalysisKind(',
+        ),
         (FACTS, "_ANSWERS = {\n", '_ANSWERS = {\n    "weight": _weight,\n'),
         (FACTS, "def _limit(summary", ANSWER),
         ("dem_cli/results/output/summary.py", '    "vary",\n', '    "weight",\n    "vary",\n'),
         ("dem_cli/analyses/estimate_cost.py", "STEPS = {", 'STEPS = {"weight": (500, 50_000),'),
         ("dem_cli/case/explain.py", "DOC_PAGES = {", 'DOC_PAGES = {"analysis.weight": "docs/numerics.md",'),
-        ("dem_cli/app/pipeline/monitor_names.py", 'STATIC = ("gravity",', 'STATIC = ("weight", "gravity",'),
         ("docs/glossary.md", "`gravity`, `cycle`,", "`gravity`, `weight`, `cycle`,"),
     ),
     commands=(("scripts/draw_tree",), ("scripts/docs", "--write")),
@@ -85,7 +88,6 @@ RECIPE = Recipe(
         "tests/house/test_imports.py::test_only_the_arrows_of_the_house[analyses.weight]", "tests/house/test_kinds.py",
     ),
     left_out=(
-        "dem_cli/core/records/frames.py", "dem_cli/case/plausibility.py", "dem_cli/results/output/layout.py",
-        "dem_cli/core/records/ports.py",
+        "dem_cli/core/records/frames.py", "dem_cli/core/records/ports.py",
     ),
 )  # fmt: skip

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.errors import CaseError, CaseProblem
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case, Monitor
-
-STATIC = ("gravity", "pushover", "cycle", "settlement")  # kinds of analysis that end in an equilibrium
 
 
 def monitor_names(monitors: Sequence[Monitor]) -> list[str]:
@@ -37,11 +36,11 @@ def check_quantities(case: Case, names: Sequence[str]) -> None:
     from dem_cli.case.wording import unknown_name
     from dem_cli.results.output.equilibrium_monitors import PARTS
 
-    if case.analysis.kind == "time-history":
+    if kind_of(case.analysis.kind).timed:
         from dem_cli.results.output.series import Peak
 
         known = [f"peaks.{name}.{part}" for name in names for part in (*Peak._fields, "unit")]
-    elif case.analysis.kind in STATIC:
+    elif kind_of(case.analysis.kind).rests:
         known = [f"monitors.{name}.{part}" for name in names for part in PARTS]
     else:
         return

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.case.cross_references import WITH_REAL_MASSES
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.case.wording import either, show
 from dem_cli.core.model.model import MOTIONS, NO_RESTRAINTS, Model
 from dem_cli.errors import CaseError, CaseProblem
@@ -44,7 +44,7 @@ def restrained(case: Case, model: Model) -> np.ndarray:
 def _partly_turning(case: Case, model: Model, held: np.ndarray, i: int) -> list[CaseProblem]:
     """Blocks with real masses in space that turn about some axes only: their inertia is a tensor that turns along."""
     turns = held[:, model.rotations]
-    if case.analysis.kind not in WITH_REAL_MASSES or not (turns.any(axis=1) & ~turns.all(axis=1)).any():
+    if not kind_of(case.analysis.kind).real_masses or not (turns.any(axis=1) & ~turns.all(axis=1)).any():
         return []
     message = f"in kind = {show(case.analysis.kind)} a block turns about all axes or about none; give 'rotation'"
     return [CaseProblem(("restraint", i, "fixed"), message)]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dem_cli.case.cross_references import SHAKES
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.case.plausibility import BlockSizes, size_doubts
 from dem_cli.case.wording import show
 from dem_cli.core.arithmetic import functions
@@ -103,7 +103,7 @@ def _loads_and_weight(case: Case, model: Model, loads: Sequence[AppliedLoad]) ->
     pressing = [load for load in loads if load.dead and not (pattern == "mass" and load.weights.any())]
     live = [load for load in loads if not load.dead]
     dead_force, live_force = (sum(map(_size, some)) for some in (pressing, live))
-    if (pattern == "mass" or case.analysis.kind in SHAKES) and dead_force > HEAVY * weight:
+    if (pattern == "mass" or kind_of(case.analysis.kind).shakes) and dead_force > HEAVY * weight:
         pushes = "are no part of the live load" if pattern == "mass" else "have no inertia"
         message = f"dead loads of {dead_force:.3g} N beside blocks of {weight:.3g} N press, but {pushes}: "
         key = str(pressing[0].path[0])

@@ -14,7 +14,6 @@ import numpy as np
 from h5py import h5a, h5s, h5t
 
 RESULTS_FORMAT = 1
-IN_SECONDS = frozenset(("time-history",))  # kinds whose frames ParaView counts in seconds; others by their number
 ROW_SCALARS = ("step", "load", "displacement", "unbalanced", "overlap", "time", "live_displacement")
 PURE, WORDS = "1", ""  # units of pure numbers, counts and numbers of things; of text
 PER_SECOND, PER_STEP = ("m/s", "rad/s"), ("m/step", "rad/step")  # of velocities: of centroids, of spins

@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 from h5py import h5d, h5s
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.model.model import SPATIAL_MODEL, WHERE_ASKED_FOR, Model
 from dem_cli.core.records.frames import STAGES, STATES
 from dem_cli.core.records.history_rows import MONITOR_UNITS, Energy
@@ -24,7 +25,6 @@ from dem_cli.results.output.layout import (
     ENERGY,
     FRAMES,
     HISTORY,
-    IN_SECONDS,
     MODEL,
     PER_STEP_FRAMES,
     RESULTS_FORMAT,
@@ -91,7 +91,7 @@ def growing_parts(
     dem: h5py.Group, dimension: int, kind: str, monitors: tuple[str, ...], quantities: tuple[str, ...]
 ) -> GrowingParts:
     """The groups of a skeleton that grow."""
-    moving = FRAMES if kind in IN_SECONDS else PER_STEP_FRAMES
+    moving = FRAMES if kind_of(kind).timed else PER_STEP_FRAMES
     said = _said_of_history(monitors, quantities)
     return GrowingParts(
         GrowingGroup(dem["frames"], declared(moving, dimension), FRAMES_AT_ONCE),

@@ -13,6 +13,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.model.model import Model
 from dem_cli.core.records.frames import FRAME_ARRAYS, STAGES, Frame, FrameStack, LinkRecord, stacked
 from dem_cli.core.records.history_rows import Energy, HistoryRow, RunRow, Samples
@@ -22,7 +23,7 @@ from dem_cli.results.output.equilibrium_monitors import EquilibriumMonitors
 from dem_cli.results.output.folder import write_error
 from dem_cli.results.output.growing_dataset import GrowingGroup
 from dem_cli.results.output.hdf5_file import Hdf5File
-from dem_cli.results.output.layout import IN_SECONDS, JOINT_PLACES, JOINT_STATES, LINKS, ROW_SCALARS, declared
+from dem_cli.results.output.layout import JOINT_PLACES, JOINT_STATES, LINKS, ROW_SCALARS, declared
 from dem_cli.results.output.paraview.snapshot_files import BLOCKS, FollowedJoints, ParaViewFiles
 from dem_cli.results.output.run_tables import TABLES, write_runs
 from dem_cli.results.output.series import SeriesWriter
@@ -206,7 +207,7 @@ class ResultWriter:
         self.n_frames += 1
         self.last_frame = frame
         self._n_points = len(frame.contacts.joint)
-        if self.kind not in IN_SECONDS or self._worked(frame.step):
+        if not kind_of(self.kind).timed or self._worked(frame.step):
             self._flushed_step = frame.step
             self._flush()
 
@@ -216,7 +217,7 @@ class ResultWriter:
         By steps and not by a clock: the same run leaves the same bytes.
         """
         work = abs(step - self._flushed_step) * (self._n_points + _OF_A_STEP)
-        return self.kind in IN_SECONDS and work >= _UNFLUSHED
+        return kind_of(self.kind).timed and work >= _UNFLUSHED
 
     def _store_frames(self) -> None:
         """All frames that wait, together."""
@@ -234,7 +235,7 @@ class ResultWriter:
                 self._joint_states.append(name, values.reshape(n, -1))
         stack = self.order.stack(stack)
         self._keep(stack)
-        self._vtk.add(stack.numbers("time") if self.kind in IN_SECONDS else first + np.arange(float(n)), stack, now)
+        self._vtk.add(stack.numbers("time") if kind_of(self.kind).timed else first + np.arange(float(n)), stack, now)
 
     def _begin_frames(self, links: LinkRecord | None) -> None:
         """The files for ParaView, and what does not change of joints and links."""

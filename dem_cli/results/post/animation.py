@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.records.frames import Frame
 from dem_cli.errors import MissingExtra, UsageError
-from dem_cli.results.output.layout import IN_SECONDS
 from dem_cli.results.output.paraview.vertices import rest_vertices
 from dem_cli.results.output.reader import Results
 from dem_cli.results.output.series import HistorySeries
@@ -134,7 +134,7 @@ class _Scene:
     def show(self, frame: Frame) -> None:
         """Put the blocks where they are in a frame."""
         self.place(self._corners(frame))
-        timed = self.results.kind in IN_SECONDS
+        timed = kind_of(self.results.kind).timed
         text = f"{frame.time:.2f} s" if timed else f"{frame.stage}: λ = {frame.load:.3f}"
         drawn = "" if self.scale == 1.0 else f", displacements × {self.scale:,.0f}"
         self.axis.set_title(text + drawn, fontsize=10, fontweight="normal")

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.model.model import Model
 from dem_cli.core.records.frames import STATES, Frame
-from dem_cli.results.output.layout import IN_SECONDS
 from dem_cli.results.output.paraview.vertices import placed_vertices, rest_vertices
 from dem_cli.results.output.reader import Results
 from dem_cli.results.post import frame_measures, style
@@ -29,7 +29,7 @@ def draw_collapse(results: Results, path: Path, asked: Standpoint = AS_BEST) -> 
     corners = [drawing.flat(rest_vertices(model))]
     drawn = []
     scales = [frame_measures.visible_scale(model, frame) for _, frame in panels]
-    if results.kind in IN_SECONDS:  # the same structure before and after
+    if kind_of(results.kind).timed:  # the same structure before and after
         scales = [min(scales)] * len(scales)
     for (name, frame), scale in zip(panels, scales, strict=True):
         shown = frame_measures.scaled(model, frame, scale)
@@ -54,7 +54,7 @@ def _panels(results: Results) -> list[tuple[str, Frame]]:
         return []
     if results.summary.get("kind") == "limit":
         return [(f"{frame.stage} {MECHANISM}", frame) for frame in frames]
-    if results.kind in IN_SECONDS:
+    if kind_of(results.kind).timed:
         return _instants(results)
     if results.kind == "safety":
         return _last_and_first(results)
@@ -107,7 +107,7 @@ def _panel_title(name: str, frame: Frame, scale: float, kind: str) -> str:
     if name.endswith(MECHANISM):
         return f"{name}: λ = {frame.load:.4g}\nof any size: rigid blocks have no displacement at failure"
     factor, unit = style.length_unit(frame.displacement)
-    instant = f": {frame.time:.3g} s" if kind in IN_SECONDS else f": λ = {frame.load:.4g}"
+    instant = f": {frame.time:.3g} s" if kind_of(kind).timed else f": λ = {frame.load:.4g}"
     instant = "" if kind == "safety" and frame.load == 0.0 else instant
     drawn = "true scale" if scale == 1.0 else f"displacements × {scale:,.0f}"
     return f"{name}{instant}\nmoved {factor * frame.displacement:.3g} {unit}, {drawn}"

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.records.frames import Frame
-from dem_cli.results.output.layout import IN_SECONDS
 from dem_cli.results.output.reader import Results
 
 EACH = 0.08  # s that a frame stays where it has no time of its own
@@ -24,7 +24,7 @@ class Playback(NamedTuple):
 def playback(results: Results, each: float | None = None) -> Playback:
     """All frames of a run that can be told apart. each: seconds that one stays; None: as long as it took, or EACH."""
     frames = list(results.frames)
-    if results.kind not in IN_SECONDS or each is not None:
+    if not kind_of(results.kind).timed or each is not None:
         return Playback(frames, [each or EACH] * len(frames))
     shown = _apart([frame.time for frame in frames], int(np.argmax([frame.displacement for frame in frames])))
     times = [frames[i].time for i in shown]

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.records.history_rows import MONITOR_UNITS
 from dem_cli.errors import UsageError
-from dem_cli.results.output.layout import IN_SECONDS
 from dem_cli.results.output.reader import Results
 from dem_cli.results.output.series import BASE, HistorySeries
 from dem_cli.results.post.capacity import capacity_axis
@@ -41,7 +41,7 @@ def tables(results: Results) -> list[ColumnTable]:
     found = [_history(results)] if len(results.history.get("step", ())) else []
     if results.series is not None and len(results.series.time) > 1:
         series = [_series(results.series), _spectra(results.series)]
-        found = [*series, *found] if results.kind in IN_SECONDS else [*found, *series]
+        found = [*series, *found] if kind_of(results.kind).timed else [*found, *series]
     curve = results.summary.get("curve")
     if curve and "share" in curve:
         held = {name: np.array(curve[name], float) for name in _FRAGILITY if name in curve}
@@ -131,7 +131,7 @@ def usual(results: Results) -> tuple[str, list[str]] | None:
     first = found[0]
     if "share" in first.quantities:
         return "intensity", ["share"]
-    if results.kind in IN_SECONDS:
+    if kind_of(results.kind).timed:
         monitors = list(results.series.monitors) if results.series is not None else []
         return ("time", monitors[:1]) if monitors else None
     along = "live_displacement" if capacity_axis(results).signed else "displacement"

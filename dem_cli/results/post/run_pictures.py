@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.errors import UsageError
 from dem_cli.interrupts import look
-from dem_cli.results.output.layout import IN_SECONDS
 from dem_cli.results.output.reader import Results, read
 from dem_cli.results.post.capacity import draw_capacity
 from dem_cli.results.post.collapse import draw_collapse
@@ -84,5 +84,5 @@ def has_data(name: str, results: Results) -> bool:
     if results.kind == "safety":  # its rows are those of two structures
         return False
     if name == "capacity.png":
-        return results.kind not in IN_SECONDS and bool((results.history.get("load", no_rows) != 0.0).any())
+        return not kind_of(results.kind).timed and bool((results.history.get("load", no_rows) != 0.0).any())
     return len(results.history.get("load", no_rows)) > 0

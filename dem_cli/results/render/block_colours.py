@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.geometry.rotation import angles_of
 from dem_cli.core.model.model import Model
 from dem_cli.core.records.frames import Frame
 from dem_cli.errors import UsageError
-from dem_cli.results.output.layout import IN_SECONDS
 from dem_cli.results.output.reader import Results
 from dem_cli.results.post import frame_measures, style
 from dem_cli.results.render.sheet import ColourBar
@@ -28,7 +28,7 @@ def colours(
     """
     if quantity == "stone":
         return None, None
-    if quantity == "velocity" and results.kind not in IN_SECONDS:
+    if quantity == "velocity" and not kind_of(results.kind).timed:
         raise UsageError("--colour velocity: only time histories have velocities in metres per second")
     import matplotlib
     from matplotlib.colors import ListedColormap, to_rgb
@@ -36,7 +36,7 @@ def colours(
     model = results.model
     rows = [block_values(model, frame, quantity) for frame in frames]
     highest = max(float(row[~model.fixed].max(initial=0.0)) for row in rows)
-    factor, label = _label(quantity, highest, results.kind in IN_SECONDS)
+    factor, label = _label(quantity, highest, kind_of(results.kind).timed)
     shades = ListedColormap(matplotlib.colormaps[_MAP](np.linspace(_FROM, _TO, 256)))
     ground = model.fixed[:, np.newaxis]
     drawn = [np.where(ground, to_rgb(style.GROUND), shades(row / (highest or 1.0))[:, :3]) for row in rows]

@@ -19,10 +19,10 @@ from pathlib import Path
 
 import numpy as np
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.model.model import Model
 from dem_cli.core.records.frames import Frame
 from dem_cli.errors import DemError, MissingExtra, OutputError, UsageError
-from dem_cli.results.output.layout import IN_SECONDS
 from dem_cli.results.output.reader import Frames, Results, read
 from dem_cli.results.post import collapse, frame_measures, style, view_box
 from dem_cli.results.post.playback import SHORTEST, Playback, playback
@@ -33,7 +33,6 @@ from dem_cli.results.render.view import view_of
 
 STILL_WIDTH, MOVIE_WIDTH = 1440, 960  # pixels
 _AROUND = 0.015  # of the size of what is seen: empty space on all sides
-_STANDALONE = ("limit", "modes")  # kinds whose frames do not follow each other
 
 
 @dataclass(frozen=True)
@@ -181,7 +180,7 @@ def _moved(results: Results, frame: Frame, scale: float) -> np.ndarray:
 
 def all_frames(results: Results, fps: float | None = None) -> Playback:
     """Of a movie, and how long each is shown [s]. Raises UsageError where there is none to be made."""
-    if results.kind in _STANDALONE:
+    if kind_of(results.kind).shapes:
         raise UsageError(f"the frames of {results.kind!r} do not follow each other: no movie, but --frame N draws each")
     if len(results.frames) < 2:
         raise UsageError("a movie needs frames, and the run kept fewer than two (output.frames)")
@@ -227,7 +226,7 @@ def caption(results: Results, frame: Frame, scale: float) -> str:
     if results.kind == "limit":
         return f"{frame.stage} mechanism: λ = {frame.load:.4g} · of any size: rigid blocks do not move before failure"
     factor, unit = style.length_unit(frame.displacement)
-    instant = f"{frame.time:.2f} s" if results.kind in IN_SECONDS else f"{frame.stage}: λ = {frame.load:.4g}"
+    instant = f"{frame.time:.2f} s" if kind_of(results.kind).timed else f"{frame.stage}: λ = {frame.load:.4g}"
     times = f"{float(format(scale, '.4g')):,.10g}"
     drawn = "true scale" if scale == 1.0 else f"displacements drawn {times} times larger"
     instant = instant.replace("-", "−")

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.records.history_rows import MONITOR_UNITS
-from dem_cli.results.output.layout import IN_SECONDS
 from dem_cli.results.output.reader import Results
 from dem_cli.results.output.reference import from_summary
 from dem_cli.results.output.series import BASE
@@ -41,8 +41,8 @@ def line(name: str, x: np.ndarray, y: np.ndarray, colour: str, **look: Any) -> d
 
 
 def _capacity(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Chart]:
-    history = results.history
-    if results.kind in {*IN_SECONDS, "modes"} or not len(history.get("load", ())) or not (history["load"] != 0.0).any():
+    history, kind = results.history, kind_of(results.kind)
+    if kind.timed or kind.shapes or not len(history.get("load", ())) or not (history["load"] != 0.0).any():
         return []
     along = capacity_axis(results)
     factor, unit = style.length_unit(along.farthest)

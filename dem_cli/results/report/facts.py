@@ -7,19 +7,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.model.model import Model
 from dem_cli.core.model.scales import DOUBTFUL_CLOSURE, DOUBTFUL_OVERLAP, DOUBTFUL_REWEIGHTING, smallest_edge
 from dem_cli.results.output.ending import ending_words, median_words, unfound_load
-from dem_cli.results.output.layout import IN_SECONDS
 from dem_cli.results.output.paraview.vertices import size_in_words
 from dem_cli.results.output.reader import Results
 from dem_cli.results.post import style
 
-KIND_TITLES = {
-    "pushover": "Pushover", "gravity": "Own weight", "settlement": "Settlement", "cycle": "Load path",
-    "time-history": "Time history", "fragility": "Fragility", "modes": "Natural modes", "safety": "Factor of safety",
-    "limit": "Limit analysis",
-}  # fmt: skip
 BALANCED = 1e-5  # unbalanced force over the block's own weight that core/statics/equilibrium.py accepts
 GOOD, LOOK, BAD = "good", "look", "bad"
 _MOST_IN_LIST = 12  # values of a list that the table of all numbers shows
@@ -155,7 +150,7 @@ def audit(summary: Mapping[str, Any], results: Results | None) -> list[Soundness
     overlap = summary.get("largest_overlap")
     if overlap is not None and results is not None:
         share = overlap / smallest_edge(results.model)
-        hit = summary.get("kind") in IN_SECONDS  # blocks that fall sink in for a moment
+        hit = kind_of(summary.get("kind")).timed  # blocks that fall sink in for a moment
         tone = GOOD if share <= DOUBTFUL_OVERLAP else LOOK if hit else BAD
         text = f"{_metres(overlap)}, {share:.2g} of the smallest edge"
         words = (
@@ -170,7 +165,7 @@ def _reweighting(summary: Mapping[str, Any], results: Results | None) -> list[So
     found = summary.get("reweighting")
     if not found or results is None or not len(results.history.get("step", ())):
         return []
-    entries = ["kinetic"] if summary.get("kind") in IN_SECONDS else list(results.energy)
+    entries = ["kinetic"] if kind_of(summary.get("kind")).timed else list(results.energy)
     largest = max(float(np.abs(results.energy[name]).max()) for name in entries)
     if largest <= 0.0:
         return []

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from html import escape
 from typing import Any
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.results.output.reader import Results
-from dem_cli.results.report.facts import KIND_TITLES, answer
+from dem_cli.results.report.facts import answer
 from dem_cli.results.report.page import render
 from dem_cli.results.report.view import view
 
@@ -22,7 +23,7 @@ def cell(results: Results, summary: Mapping[str, Any], readable: bool) -> str:
         {"view": scene, "charts": []},
         brief=True,
         title=str(summary.get("title") or "A run that was stopped"),
-        kind=KIND_TITLES.get(results.kind, "Run"),
+        kind=kind_of(results.kind).title,
         answer=answer(summary),
         verdicts=[],
         warnings=[str(text) for text in summary.get("warnings") or ()],

@@ -8,12 +8,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.errors import UsageError
 from dem_cli.results.output.reader import Results, read
 from dem_cli.results.output.store import CASE, RESULTS
 from dem_cli.results.post.run_pictures import PICTURES, has_data
 from dem_cli.results.report.charts import charts
-from dem_cli.results.report.facts import KIND_TITLES, all_numbers, answer, audit, model_rows
+from dem_cli.results.report.facts import all_numbers, answer, audit, model_rows
 from dem_cli.results.report.page import case_text, render
 from dem_cli.results.report.view import view
 
@@ -39,7 +40,7 @@ def page(folder: Path, summary: Mapping[str, Any], said: TerminalText) -> str:
     return render(
         {"view": scene, "charts": drawn},
         title=str(summary.get("title") or folder.resolve().name),
-        kind=KIND_TITLES.get(str(summary.get("kind")), "Run"),
+        kind=kind_of(summary.get("kind")).title,
         answer=answer(summary),
         verdicts=said.verdicts,
         warnings=[str(text) for text in summary.get("warnings") or ()],

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.geometry.rotation import beside, largest_angle_between, matrices, rotation_vectors, unturned
 from dem_cli.core.model.model import Model
 from dem_cli.core.records.frames import STATES, ContactRecord, Frame
-from dem_cli.results.output.layout import IN_SECONDS
 from dem_cli.results.output.paraview.vertices import in_space
 from dem_cli.results.output.reader import Results
 from dem_cli.results.post import frame_measures
@@ -28,7 +28,6 @@ from dem_cli.results.report.packed_arrays import pack
 MOST_BYTES = 8_000_000  # of all frames; where there is more, frames are left out
 AS_BUILT = "as built"
 MODE = "mode"  # stage of frames that show natural modes
-SHAPE_KINDS = frozenset(("modes", "limit"))  # kinds whose displacements have no size
 _HAIRLINE = 0.02  # joints open by less than this share of the largest displacement are faint
 _FAINT = len(STATES)  # the code of these
 _FAR_ROUND = 2.0  # rad: who turns farther from frame to frame may have gone the other way round
@@ -67,15 +66,15 @@ def view(results: Results, most: int = MOST_BYTES) -> dict[str, Any]:
         "left_out": len(frames) - len(chosen),
         "scale": min(scales),
         "start": _first_shown(chosen, results.summary),
-        "in_seconds": results.kind in IN_SECONDS,
+        "in_seconds": kind_of(results.kind).timed,
         "modes": chosen[0].stage == MODE,
-        "of_any_size": results.kind in SHAPE_KINDS,
+        "of_any_size": kind_of(results.kind).shapes,
         "still": chosen[0].stage == AS_BUILT,
         "ground": in_space(np.stack(grounds)).tolist(),
         "ground_moves": series is not None and bool(series.base[:, 2].any()),
         "has_joints": any(len(frame.contacts.joint) for frame in chosen),
         "carried": carried,
-        "follows": results.kind not in SHAPE_KINDS and _close(chosen),
+        "follows": not kind_of(results.kind).shapes and _close(chosen),
     }
 
 
@@ -159,11 +158,11 @@ def _says(frame: Frame, results: Results) -> str:
     """What tells a frame from the others: its frequency, its instant, or its load where that changes."""
     if frame.stage == MODE:
         return f"mode {frame.step}: {results.summary['frequencies'][frame.step - 1]:.4g} Hz"
-    if results.kind in IN_SECONDS:
+    if kind_of(results.kind).timed:
         return f"{frame.time:.3f} s"
     loads = np.abs(results.history.get("load", np.zeros(0)))
     load = frame.load if abs(frame.load) > _NO_LOAD * loads.max(initial=0.0) else 0.0
-    return f"λ = {load:.4g}".replace("-", "−") if loads.any() or results.kind in SHAPE_KINDS else ""
+    return f"λ = {load:.4g}".replace("-", "−") if loads.any() or kind_of(results.kind).shapes else ""
 
 
 def _arms(frame: Frame, points: np.ndarray, owners: np.ndarray) -> np.ndarray:

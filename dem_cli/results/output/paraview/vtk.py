@@ -9,12 +9,12 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.model.model import Model
 from dem_cli.core.records.frames import Frame
 from dem_cli.errors import UsageError
 from dem_cli.results.output.atomic_file import whole_folder, write_text
 from dem_cli.results.output.folder import write_error
-from dem_cli.results.output.layout import IN_SECONDS
 from dem_cli.results.output.paraview.cells import cells_of, outlines
 from dem_cli.results.output.paraview.fields import block_fields, contact_fields, turning_fields
 from dem_cli.results.output.paraview.vertices import in_space, placed_vertices, rest_vertices, vertex_velocities
@@ -155,7 +155,7 @@ def _array(name: str, values: np.ndarray, extra: str) -> str:
 
 def times(results: Results) -> list[float]:
     """What a viewer counts the frames by: seconds in time histories, otherwise their number."""
-    if results.kind in IN_SECONDS:
+    if kind_of(results.kind).timed:
         return [frame.time for frame in results.frames]
     return [float(i) for i in range(len(results.frames))]
 
