@@ -43,3 +43,24 @@ def test_a_gap_that_closes_explains_a_larger_factor():
     assert above["explained"]
     assert summary["status"] == "ok"
     assert 3.0 * 0.998 < summary["safety_factor"] < 3.75
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_strength_beside_friction_has_a_bound(dimension):
+    """A glued block pushed by 0.8 of its weight slides at F = (c A + μ N)/H, c A being half of the weight: 1.375.
+
+    Strength stays after failure, so that points of the joint that reach it first lose nothing.
+    """
+    weight = 2000.0 * 9.81
+    drawn = [BASE, block("b", rectangle(0, 0, 1, 1))]
+    if dimension == 3:
+        drawn = [{**one, "vertices": [[x, y, z] for x, z in one["vertices"] for y in (0.0, 1.0)]} for one in drawn]
+    push = SAFETY | {"load": 0.8, "direction": [1.0] + [0.0] * (dimension - 1)}
+    case = tables(*drawn, dimension=dimension, analysis=push)
+    strength = {name: share * weight for name, share in (("cohesion", 0.5), ("tension", 0.8))}
+    left = {f"{name}_residual": value for name, value in strength.items()}
+    case["joints"] = {"glue": {"law": "mohr-coulomb", "friction": 0.6, "points": 2} | strength | left}
+    summary, _ = solve(case)
+    assert summary["limit_analysis"]["impossible_at"] == pytest.approx(1.375, rel=2e-3)
+    assert summary["safety_factor"] == pytest.approx(1.375, rel=4e-3)
+    assert summary["status"] == "ok"

@@ -1,6 +1,6 @@
-"""Bound by limit analysis: values from which on no forces in the friction cones exist.
+"""Bound by limit analysis: values from which on no forces within the strength of the joints exist.
 
-That is a bound, as friction is associated in it, and a first guess for the runs that decide.
+That is a bound, as friction is associated in it and no bond gives way, and a first guess for the runs that decide.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def bound(variant: Variant, scale: Scale, resolution: float, settings: Settings 
 def stands(case: Case, model: Model, settings: Settings = DEFAULT) -> bool | None:
     """Whether limit analysis finds forces that carry dead loads and the constant load of the case; None: not known.
 
-    Raises UsageError where the law has no cone |T| ≤ μ N.
+    Raises UsageError where the strength of the law is not held by straight lines.
     """
     return _carries(case, model, None, None, settings)
 
@@ -100,22 +100,21 @@ def stands_where_it_rests(case: Case, sim: Simulation, touch: tuple[float, float
 
 def _carries(case: Case, model: Model, moved: Simulation | None, near: float | None, settings: Settings) -> bool | None:
     """As `stands`, of the start or of the blocks of a simulation with faces that are as near as that."""
-    from dem_cli.core.laws.envelope import frictional
     from dem_cli.core.limit.analysis import start_structure
     from dem_cli.core.limit.associated import carried
-    from dem_cli.core.limit.cone import friction_of
+    from dem_cli.core.limit.cone import envelope_of
 
     request = solver_request(case)
-    properties = joint_properties(request, model, settings.stiffness.statics)
+    properties, law = joint_properties(request, model, settings.stiffness.statics), law_of(request)
     structure = (
-        start_structure(model, properties)
+        start_structure(model, properties, law)
         if moved is None or near is None
-        else start_structure(model, properties, bodies=moved.bodies, near=near)
+        else start_structure(model, properties, law, moved.bodies, near)
     )
     if not structure.dead.any():
         return True  # nothing to carry
-    friction = friction_of(structure.joints, law_of(request))
-    return carried(_under_load(structure, case), frictional(friction), settings.limit.associated)[0]
+    strength = envelope_of(structure.joints, law, bonds=structure.bonds)
+    return carried(_under_load(structure, case), strength, settings.limit.associated)[0]
 
 
 def _under_load(structure: LimitStructure, case: Case) -> LimitStructure:
