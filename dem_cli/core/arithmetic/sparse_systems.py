@@ -9,9 +9,8 @@ import numpy as np
 from dem_cli.core.arithmetic.symmetric_factors import count_entries, factorise_symmetric, solve_symmetric
 
 if TYPE_CHECKING:
-    from scipy.sparse import csc_array, sparray, spmatrix
+    from scipy.sparse import sparray, spmatrix
 
-FEW = 200  # unknowns, of which a full factor takes 8 ms at most
 ITERATIONS = 12  # of an inverse iteration: a shape, not a number of many digits
 
 
@@ -23,9 +22,10 @@ class SymmetricFactors:
 
     def __init__(self, matrix: sparray | spmatrix) -> None:
         from scipy.sparse import csc_array
+        from scipy.sparse.csgraph import reverse_cuthill_mckee
 
         whole = csc_array(matrix)
-        self.order, n = _narrow_order(whole), whole.shape[0]
+        self.order, n = reverse_cuthill_mckee(whole.tocsr(), symmetric_mode=True).astype(np.int64), whole.shape[0]
         ordered = csc_array(whole[self.order][:, self.order])
         whole_matrix = ordered.indptr.astype(np.int64), ordered.indices.astype(np.int64), ordered.data
         parents, counts, seen = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
@@ -49,15 +49,6 @@ class SymmetricFactors:
         solve_symmetric(self.factors, x)
         found[self.order] = x
         return found
-
-
-def _narrow_order(matrix: csc_array) -> np.ndarray:
-    """An order with entries near the diagonal, (n,): as it is where there are few, since importing the graphs costs."""
-    if matrix.shape[0] <= FEW:
-        return np.arange(matrix.shape[0])
-    from scipy.sparse.csgraph import reverse_cuthill_mckee
-
-    return reverse_cuthill_mckee(matrix.tocsr(), symmetric_mode=True).astype(np.int64)
 
 
 def solved_symmetric(matrix: sparray | spmatrix, right: np.ndarray) -> np.ndarray:
