@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from engine import solve
 
-from dem_cli.analyses import bound_beside, pushover
+from dem_cli.analyses import bound_beside
+from dem_cli.core import failure_search
 from dem_cli.core.engine.settings import DEFAULT, Settings
 from dem_cli.core.statics import warm_start
 
@@ -110,7 +111,7 @@ def test_a_wrong_start_is_not_believed(factor, monkeypatch):
         found, report = real(job, sim, limits)
         return found._replace(load=factor * found.load), report
 
-    monkeypatch.setattr(pushover, "find_start", wrong)
+    monkeypatch.setattr(failure_search, "find_start", wrong)
     summary = run("wall_21", 'analysis.start="path"')
     assert summary["failure_load"] == pytest.approx(0.6, rel=4e-3)
 
@@ -123,7 +124,7 @@ def test_forces_out_of_the_air_are_not_believed(monkeypatch):
         found, report = real(job, sim, limits)
         return found._replace(normal=np.zeros_like(found.normal), shear=np.zeros_like(found.shear)), report
 
-    monkeypatch.setattr(pushover, "find_start", wrong)
+    monkeypatch.setattr(failure_search, "find_start", wrong)
     summary = run("wall_21", 'analysis.start="path"')
     assert summary["failure_load"] == pytest.approx(0.6, rel=4e-3)
     assert summary["start"]["kind"] == "gravity" or summary["search"][0]["state"] == "equilibrium"

@@ -20,7 +20,6 @@ from dem_cli.core.records.ports import Observer
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
     from dem_cli.core.model.model import Model
-    from dem_cli.core.records.ports import Observer
 
 FOLDER = Path(__file__).resolve().parent
 HEADS = "limit analysis, no friction in head joints"

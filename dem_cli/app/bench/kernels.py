@@ -19,7 +19,6 @@ from dem_cli.app.bench.timing import TimedTask, in_turn
 if TYPE_CHECKING:
     from dem_cli.core.engine.dynamic import DynamicSimulation
     from dem_cli.core.engine.simulation import Simulation
-    from dem_cli.masonry.assembly.solver_request import solver_request
 
 PICTURES: dict[str, Any] = {}
 LOAD = 0.3  # multiplier at which the walls stand, with sticking, sliding and open points
@@ -72,9 +71,11 @@ def simulation(known: KnownStructure, kinematics: str) -> Simulation:
     from dem_cli.core.engine.properties import joint_properties, law_of
     from dem_cli.core.engine.simulation import Simulation
     from dem_cli.core.kernels import records as slot
+    from dem_cli.masonry.assembly.solver_request import solver_request
 
     case, model = known.build()
-    sim = Simulation(model, law_of(solver_request(case)), joint_properties(solver_request(case), model), kinematics)
+    request = solver_request(case)
+    sim = Simulation(model, law_of(request), joint_properties(request, model), kinematics)
     sim.compile()
     sim.set_load(LOAD)
     sim.advance(FIRST_STEPS, slot.HOLD_LOAD)

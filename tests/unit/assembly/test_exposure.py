@@ -16,7 +16,7 @@ from dem_cli.masonry.assembly.applied_loads import applied_loads
 from dem_cli.masonry.assembly.assemble import assembly
 from dem_cli.masonry.assembly.exposure import Surfaces
 
-TEMPLATES = Path(__file__).resolve().parents[3] / "dem_cli" / "cli" / "templates"
+TEMPLATES = Path(__file__).resolve().parents[3] / "dem_cli" / "app" / "cli" / "templates"
 KINDS = ("arch", "bridge", "herringbone-wall", "temple-front", "vault", "voronoi-wall", "wall-section")  # 2D and 3D
 LIFT = 1000.0 * 9.81
 
