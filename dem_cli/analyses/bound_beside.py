@@ -241,8 +241,9 @@ def _moved(job: CaseJob, search: FailureLoad | Carried, sim: Simulation, sense: 
     end = sim.save()
     sim.restore(search.standing)
     try:
-        displacement = max(measures.largest_displacement(sim) - search.settled, 0.0)
-        return Moved(displacement, _bound_there(job, sim, displacement, sense))
+        since_start = measures.largest_displacement(sim)
+        displacement = max(since_start - search.settled, 0.0)
+        return Moved(displacement, _bound_there(job, sim, since_start, sense))
     except UsageError:
         return Moved(displacement, None)
     finally:
@@ -251,8 +252,8 @@ def _moved(job: CaseJob, search: FailureLoad | Carried, sim: Simulation, sense: 
 
 def _bound_there(job: CaseJob, sim: Simulation, displacement: float, sense: float) -> float | None:
     """The associated load of the blocks of a simulation where they are, on faces as drawn; with fixed geometry on the
-    joints of the start with the gaps that have closed since. displacement: how far they have moved [m]; sense: as in
-    `_moved`.
+    joints of the start with the gaps that have closed since. displacement: how far they have moved since then, under
+    their dead loads as well [m]; sense: as in `_moved`.
     """
     from dem_cli.core.limit.analysis import load_of_points, load_where_it_rests
 

@@ -183,6 +183,21 @@ def test_blocks_that_rest_after_gaps_have_closed_have_the_bound_of_where_they_re
     assert ("limit analysis", "0.2000 associated, where blocks rest at this load") in answer_rows(summary)
 
 
+def test_stones_that_came_to_rest_askew_carry_in_the_bound_of_where_they_rest():
+    """Stones up to 0.3 mm too high or too low turn until each rests: farther than any live load moves them then."""
+
+    def wall(error: float, kinematics: str) -> dict:
+        case = tables(friction=0.715, analysis={"kind": "pushover", "kinematics": kinematics}, seed=40020)
+        wall = {"kind": "wall", "id": "s", "block": [0.5, 0.35], "courses": 4, "blocks_per_course": 1}
+        case["structure"] = [wall | {"bond": "flemish", "gable": {"height": 0.5}}]
+        return case | {"imperfection": [{"height": [-error, error]}]}
+
+    as_drawn, askew = (solve(wall(*of))[0] for of in ((0.0, "fixed"), (3e-4, "large")))
+    assert askew["status"] == "ok"
+    assert askew["bound_where_it_rests"]["bound"] == pytest.approx(as_drawn["limit_analysis"]["associated"], rel=5e-3)
+    assert "no_bound" not in askew
+
+
 def test_a_load_above_the_bound_of_where_blocks_rest_is_not_ok(monkeypatch):
     """The search is made to say 2 % more than it found."""
     found = LoadSearch.run
