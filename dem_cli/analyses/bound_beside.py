@@ -14,7 +14,7 @@ from dem_cli.analyses.ensembles.case_job import CaseJob
 from dem_cli.core.engine import measures
 from dem_cli.core.engine.kinematics import gaps_may_close
 from dem_cli.core.engine.properties import joint_properties, law_of
-from dem_cli.core.records.statuses import ABOVE
+from dem_cli.core.records.statuses import ABOVE, FALLS
 from dem_cli.core.statics.failure_bracket import OK
 from dem_cli.errors import UsageError
 
@@ -138,7 +138,8 @@ def beside(job: CaseJob, search: FailureLoad, sim: Simulation, start: StartBound
     if loads is None:
         return found | {"no_bound": start.why_not}
     if loads.associated.upper is None:
-        return found | {"no_bound": start.why_not or f"limit analysis says: {loads.associated.status}"}
+        rests = _where_it_rests(job, search, sim, search.low) if loads.associated.status == FALLS else {}
+        return found | (rests or {"no_bound": start.why_not or f"limit analysis says: {loads.associated.status}"})
     bound, resolution = loads.associated.upper, job.case.analysis.resolution
     job.warnings += _clamped(job, search, bound)
     if not is_above(search.low, bound, resolution):
@@ -148,6 +149,22 @@ def beside(job: CaseJob, search: FailureLoad, sim: Simulation, start: StartBound
     explained = moved.bound is not None and not is_above(search.low, moved.bound, resolution)
     job.warnings.append(in_words(search.low, bound, moved, explained))
     return found | {"above_the_bound": told | {"explained": explained}}
+
+
+def _where_it_rests(job: CaseJob, search: FailureLoad, sim: Simulation, load: float) -> dict[str, Any]:
+    """The bound of blocks that rest only after gaps have closed: that of their geometry at the load; {}: none is known.
+
+    Warns where the load is above it.
+    """
+    moved = _moved(job, search, sim)
+    if moved.bound is None:
+        return {}
+    found: dict[str, Any] = {"bound_where_it_rests": {"bound": moved.bound, "displacement": moved.displacement}}
+    if not is_above(load, moved.bound, job.case.analysis.resolution):
+        return found
+    job.warnings.append(in_words(load, moved.bound, moved, explained=False))
+    told = {"bound": moved.bound, "displacement": moved.displacement, "bound_where_it_rests": moved.bound}
+    return found | {"above_the_bound": told | {"explained": False}}
 
 
 def beside_path(job: CaseJob, sim: Simulation, highest: Carried, lowest: Carried, resolution: float) -> dict[str, Any]:
@@ -228,8 +245,9 @@ def _moved(job: CaseJob, search: FailureLoad | Carried, sim: Simulation, sense: 
     end = sim.save()
     sim.restore(search.standing)
     try:
-        displacement = max(measures.largest_displacement(sim) - search.settled, 0.0)
-        return Moved(displacement, _bound_there(job, sim, displacement, sense))
+        since_start = measures.largest_displacement(sim)
+        displacement = max(since_start - search.settled, 0.0)
+        return Moved(displacement, _bound_there(job, sim, since_start, sense))
     except UsageError:
         return Moved(displacement, None)
     finally:
@@ -238,8 +256,8 @@ def _moved(job: CaseJob, search: FailureLoad | Carried, sim: Simulation, sense: 
 
 def _bound_there(job: CaseJob, sim: Simulation, displacement: float, sense: float) -> float | None:
     """The associated load of the blocks of a simulation where they are, on faces as drawn; with fixed geometry on the
-    joints of the start with the gaps that have closed since. displacement: how far they have moved [m]; sense: as in
-    `_moved`.
+    joints of the start with the gaps that have closed since. displacement: how far they have moved since then, under
+    their dead loads as well [m]; sense: as in `_moved`.
     """
     from dem_cli.core.limit.analysis import load_of_points, load_where_it_rests
 

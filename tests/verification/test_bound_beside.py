@@ -168,6 +168,51 @@ def test_a_stop_that_closes_explains_a_higher_load():
     assert np.isfinite(above["bound_where_it_rests"])
 
 
+def over_a_gap() -> dict:
+    """The pier 0.1 mm above its base, on which it comes to rest: nothing stands in the geometry of the start."""
+    moving = {"kind": "pushover", "kinematics": "large"}
+    return tables(BASE, block("b", rectangle(0, 1e-4, 0.2, 1.0001)), analysis=moving)
+
+
+def test_blocks_that_rest_after_gaps_have_closed_have_the_bound_of_where_they_rest():
+    summary, _ = solve(over_a_gap())
+    assert summary["status"] == "ok"
+    assert summary["failure_load"] == pytest.approx(0.2, rel=2e-3)
+    assert summary["bound_where_it_rests"]["bound"] == pytest.approx(0.2, rel=2e-3)
+    assert not {"no_bound", "above_the_bound"} & summary.keys()
+    assert ("limit analysis", "0.2000 associated, where blocks rest at this load") in answer_rows(summary)
+
+
+def test_stones_that_came_to_rest_askew_carry_in_the_bound_of_where_they_rest():
+    """Stones up to 0.3 mm too high or too low turn until each rests: farther than any live load moves them then."""
+
+    def wall(error: float, kinematics: str) -> dict:
+        case = tables(friction=0.715, analysis={"kind": "pushover", "kinematics": kinematics}, seed=40020)
+        wall = {"kind": "wall", "id": "s", "block": [0.5, 0.35], "courses": 4, "blocks_per_course": 1}
+        case["structure"] = [wall | {"bond": "flemish", "gable": {"height": 0.5}}]
+        return case | {"imperfection": [{"height": [-error, error]}]}
+
+    as_drawn, askew = (solve(wall(*of))[0] for of in ((0.0, "fixed"), (3e-4, "large")))
+    assert askew["status"] == "ok"
+    assert askew["bound_where_it_rests"]["bound"] == pytest.approx(as_drawn["limit_analysis"]["associated"], rel=5e-3)
+    assert "no_bound" not in askew
+
+
+def test_a_load_above_the_bound_of_where_blocks_rest_is_not_ok(monkeypatch):
+    """The search is made to say 2 % more than it found."""
+    found = LoadSearch.run
+
+    def too_much(search, *given):
+        found(search, *given)
+        search.answer.low, search.answer.high = 1.02 * search.answer.low, 1.02 * search.answer.high
+
+    monkeypatch.setattr(LoadSearch, "run", too_much)
+    summary, _ = solve(over_a_gap())
+    assert summary["status"] == ABOVE
+    assert summary["above_the_bound"]["explained"] is False
+    assert any("which no structure of this geometry can carry" in text for text in summary["warnings"])
+
+
 def test_restored_after_it_looked(monkeypatch):
     """The state that the run ends with is not that of the look."""
     seen = []

@@ -51,6 +51,7 @@ ORDER = (
     "energy_shares",
     "limit_analysis",
     "no_bound",
+    "bound_where_it_rests",
     "above_the_bound",
     "reference",
     "blocks",

@@ -38,6 +38,9 @@ def sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         rows.append(("limit analysis", text))
         if wedged(limits):
             rows.append(("", f"associated: {WEDGED}"))
+    rests = summary.get("bound_where_it_rests")
+    if rests:
+        rows.append(("limit analysis", f"{load_text(rests['bound'])} associated, where blocks rest at this load"))
     if summary.get("no_bound"):
         rows.append(("no bound", str(summary["no_bound"])))
     return rows + reference_rows(summary)

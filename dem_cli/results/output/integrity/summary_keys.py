@@ -60,6 +60,13 @@ class FoundAbove(SummaryTable):
     explained: bool
 
 
+class FoundMovedBound(SummaryTable):
+    """bound_where_it_rests."""
+
+    bound: Number
+    displacement: Number
+
+
 class FoundValue(SummaryTable):
     """monitors.NAME."""
 
@@ -368,6 +375,7 @@ class RunSummary(SummaryTable):
     largest_displacement: Maybe = None
     moved_far: FoundMotion | None = None
     no_bound: str | None = None
+    bound_where_it_rests: FoundMovedBound | None = None
     above_the_bound: FoundAbove | None = None
     unbalanced_force: Maybe = None
     warnings: list[str] | None = None
