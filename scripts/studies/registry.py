@@ -12,6 +12,7 @@ STUDIES = {  # module with STUDY, sentence of the list
     "costs": ("studies.costs.study", "what `dem check` says that runs cost, and what they cost"),
     "deformable": ("studies.deformable.study", "joints and blocks that deform: points, lumped blocks"),
     "gallery": ("studies.gallery", "the pictures of docs/gallery.md"),
+    "geometries": ("studies.geometries.study", "random structures in fixed and in moving geometry, beside their bound"),
     "imperfections": ("studies.imperfections.study", "the 21-block wall with one block too low (thesis 5.4)"),
     "interrupts": ("studies.interrupts.study", "Ctrl-C and SIGTERM at random moments of every command"),
     "laws": ("studies.laws.study", "a page and a picture of every joint law"),
