@@ -18,7 +18,8 @@ WHY = (
     "μ = 5, moving", "why",
 )  # fmt: skip
 ABOVE = (
-    "seed", "run", "load", "bound of the start", "moved by [mm]", "bound where it rests", "status", "stones a tenth as far off",
+    "seed", "run", "load", "bound of the start", "moved by [mm]", "bound where it rests", "status",
+    "stones a tenth as far off",
 )  # fmt: skip
 RUNS = {
     "drawn_fixed": "fixed", "drawn_moving": "moving", "off_fixed": "off, fixed", "off_moving": "off, moving"
