@@ -62,7 +62,7 @@ class ShakenMotion(NamedTuple):
 
 
 def joints(law: str = "coulomb", **parameters: Any) -> StiffJoint:
-    """Joints between all blocks: a law of docs/laws.md by its name, and its parameters by theirs.
+    """Joints between all blocks: a law of docs/laws by its name, and its parameters by theirs.
 
     Raises ValueError for a name that is none, and with the key for a value that is not allowed.
     """

@@ -16,6 +16,7 @@ import numpy as np
 from dem_cli.registration import Registered
 
 _PLACES = {
+    "analyses.bound_beside": ("Carried",),
     "core.contact.caps": ("Caps",),
     "core.contact.chains": ("Chains",),
     "core.contact.joints": ("JointArrays",),
