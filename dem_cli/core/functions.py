@@ -102,6 +102,8 @@ def failure_load(
     from dem_cli.core.failure_search import failure_search
     from dem_cli.core.statics.agreement import doubts, load_range
 
+    if not 0.0 < resolution < 1.0:
+        raise ValueError(f"resolution: {resolution:g} is not allowed; must be between 0 and 1")
     asked = AnalysisRequest("auto", MOST_STEPS, resolution, searches=True)
     job = Job.start(_request(structure, joint, asked), structure.under(load), Observer(), settings)
     found, sim = failure_search(job)
@@ -139,7 +141,11 @@ def shake(
     model, motions = structure.model, _motions(acceleration, interval, structure.model.dimension)
     if duration is None and not motions:
         raise ValueError("duration: is missing, and there is no motion of the base that has one")
+    if duration is not None and not 0.0 < duration < np.inf:
+        raise ValueError(f"duration: {duration:g} is not allowed; must be positive and finite [s]")
     free = np.flatnonzero(~model.fixed)
+    if not set(tilt or {}) <= set(free.tolist()):
+        raise ValueError("tilt: numbers of blocks that are not fixed are wanted")
     request = _request(
         structure,
         joint,
@@ -196,7 +202,11 @@ def _motions(acceleration: np.ndarray | Sequence[Motion], interval: float, dimen
     from dem_cli.core.motion.record import record
 
     if not isinstance(acceleration, np.ndarray):
+        if not all(isinstance(one, Motion) for one in acceleration):
+            raise ValueError("acceleration: an array of numbers, or a list of motions, is wanted")
         return list(acceleration)
+    if not (0.0 < interval < np.inf and np.isfinite(acceleration).all()):
+        raise ValueError("acceleration and interval: all numbers must be finite, and the interval positive [s]")
     columns = acceleration.reshape(len(acceleration), -1)
     if len(columns) < 2 or columns.shape[1] not in (1, dimension):
         raise ValueError(f"acceleration: an array (n,) or (n, {dimension}) is wanted, n at least 2")

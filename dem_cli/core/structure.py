@@ -44,9 +44,16 @@ class Structure:
             raise ValueError("vertices: one array (n, 2) or (n, 3) of each block is wanted, the same way for all")
         (dimension,) = dimensions
         n = len(corners)
-        densities, depths = (np.broadcast_to(np.asarray(given, float), n) for given in (density, thickness))
-        if not (np.all(densities > 0.0) and np.all(depths > 0.0) and gravity > 0.0):
-            raise ValueError("density, thickness and gravity must be positive")
+        if not all(np.isfinite(block).all() for block in corners):
+            raise ValueError("vertices: all coordinates must be finite")
+        given = [np.asarray(each, float) for each in (density, thickness, gravity)]
+        if any(each.shape not in ((), (n,)) for each in given[:2]):
+            raise ValueError(f"density and thickness: one number, or one of each of the {n} blocks, is wanted")
+        if not all(np.all(np.isfinite(each) & (each > 0.0)) for each in given):
+            raise ValueError("density, thickness and gravity must be positive and finite")
+        densities, depths = (np.broadcast_to(each, n) for each in given[:2])
+        if not all(0 <= number < n for number in fixed):
+            raise ValueError(f"fixed: numbers of blocks are wanted, from 0 to {n - 1}")
         held = np.zeros(n, bool)
         held[list(fixed)] = True
         parts = [(_shape(dimension, k, block),) for k, block in enumerate(corners)]
@@ -73,6 +80,8 @@ class Structure:
         force on the centroid of each block (n_blocks, d) [N]. Raises ValueError for other shapes and for no load.
         """
         model, given, d = self.model, np.asarray(load, float), self.model.dimension
+        if not np.isfinite(given).all():
+            raise ValueError("load: all numbers must be finite")
         if given.shape == (d,) and given.any():
             length = np.sqrt((given * given).sum())
             forces = self.gravity * model.masses[:, None] * given / length

@@ -91,3 +91,41 @@ def test_mistakes_are_said():
         joints(friction=-0.6)
     with pytest.raises(ValueError, match="duration: is missing"):
         shake(column(), DRY)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"vertices": [GROUND, [(0, 0), (1, 0), (1, math.nan), (0, 1)]]}, "must be finite"),
+        ({"density": math.inf}, "positive and finite"),
+        ({"density": [1.0, 2.0, 3.0]}, "one of each of the 2 blocks"),
+        ({"fixed": [7]}, "from 0 to 1"),
+        ({"fixed": [-1]}, "from 0 to 1"),
+    ],
+)
+def test_a_structure_of_wrong_numbers_is_refused(given, said):
+    with pytest.raises(ValueError, match=said):
+        Structure(**{"vertices": [GROUND, COLUMN]} | given)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"acceleration": [0.0, 1.0]}, "an array of numbers"),
+        ({"acceleration": np.full(9, math.nan)}, "must be finite"),
+        ({"acceleration": np.ones(9), "interval": 0.0}, "the interval positive"),
+        ({"duration": -1.0}, "must be positive"),
+        ({"duration": 1.0, "tilt": {0: 0.1}}, "not fixed"),
+        ({"duration": 1.0, "tilt": {9: 0.1}}, "not fixed"),
+    ],
+)
+def test_a_motion_of_wrong_numbers_is_refused(given, said):
+    with pytest.raises(ValueError, match=said):
+        shake(column(), DRY, **given)
+
+
+def test_a_load_of_wrong_numbers_is_refused():
+    with pytest.raises(ValueError, match="must be finite"):
+        failure_load(column(), DRY, (math.nan, 0.0))
+    with pytest.raises(ValueError, match="resolution: 0 is not allowed"):
+        failure_load(column(), DRY, (1.0, 0.0), resolution=0.0)
