@@ -91,6 +91,10 @@ class FailureLoad:
         self.found, self.wide, self.status, self.undecided = False, False, NOT_CONVERGED, []
         self.failing = self.failed_from = self.failed_state = self.onset = None
 
+    def withdraw_failure(self) -> None:
+        """Forget the lowest failure, as a load above it is carried now: the step to it had been too large."""
+        self.high, self.failing, self.failed_from, self.failed_state, self.impossible = None, None, None, None, False
+
     def ends_beyond_its_path(self, resolution: float) -> bool:
         """Whether a search that started from the path carries more than its plateau: blocks that wedged."""
         path = self.limits.path if self.limits is not None and self.start.get("kind") == "path" else None

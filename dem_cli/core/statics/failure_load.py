@@ -372,6 +372,8 @@ class LoadSearch:
             verdict = self._settle(load)
             if verdict.state == "equilibrium":
                 trials.carries(load)
+                if trials.high is None:
+                    answer.withdraw_failure()
                 self._keep(load)
                 if load > (1.0 + self.resolution) * self.plateau:
                     self.plateau = np.inf  # it was none, but a rest on the way
