@@ -101,7 +101,7 @@ class Load(Selection):
 
     @property
     def falls(self) -> bool:
-        """Whether it acts on what lies under it, whatever block is named."""
+        """Tell whether the load acts on the blocks under a line or area instead of named blocks."""
         return self.line is not None or self.spread is not None or self.selected is None
 
 
@@ -150,7 +150,7 @@ class Earth(CaseModel):
 
     @property
     def sideways(self) -> float:
-        """Horizontal over vertical stress at an upright face: given, or of active earth pressure.
+        """Lateral earth pressure coefficient, horizontal over vertical stress: given, or active.
 
         Rankine (1857): tan²(45° − φ/2); with friction δ on the wall the horizontal part of that of Coulomb (1776):
         cos²φ / (1 + √(sin(φ + δ) sin φ / cos δ))².
@@ -215,7 +215,7 @@ class Pressure(Selection):
         return self
 
     def direction(self, dimension: int) -> tuple[float, ...] | None:
-        """Which way its faces look, if that is the same everywhere; None: they look at a point, or any way."""
+        """Common outward direction of the loaded faces; None where the faces look in several directions."""
         if not isinstance(self.face, str):
             return self.face
         if self.face == "all":
@@ -265,14 +265,14 @@ class Fill(Selection):
 
     @property
     def sideways(self) -> float:
-        """Horizontal over vertical stress: given, or of earth at rest, 1 − sin φ (Jaky 1944)."""
+        """Lateral earth pressure coefficient: given, or at rest, 1 − sin φ (Jaky 1944)."""
         if self.friction_angle_deg is not None:
             return 1.0 - math.sin(math.radians(self.friction_angle_deg))
         return self.coefficient or 0.0
 
     @property
     def sides(self) -> tuple[Pair, ...]:
-        """From where to where it lies along x, in space also along y [m]; (): wherever the blocks are."""
+        """Extent of the fill along x, in space also along y [m]; (): above all blocks."""
         if self.extent is None:
             return ()
         low, high = (end if isinstance(end, tuple) else (end,) for end in self.extent)
