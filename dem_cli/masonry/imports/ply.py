@@ -1,4 +1,4 @@
-"""PLY files (Stanford polygon format), by meshio: one body; solids in it are told apart by the corners they share."""
+"""Import PLY files (Stanford polygon format, meshio) as one body; its solids share no corners."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ HEADER = 1 << 16  # bytes
 
 
 def read(path: Path) -> Contents:
-    """The surface of a file. Raises FileProblem."""
+    """Read the surface of a PLY file. Raises FileProblem."""
     from meshio import ply
 
     if b"end_header" not in path.read_bytes()[:HEADER]:  # meshio would look for it without end
