@@ -102,7 +102,7 @@ def clearance(one: Pattern, other: Pattern) -> float:
 def laid(
     ends: RunEnds, bond: CourseBond, fixed: Iterable[float], heads: Iterable[float] = (), apart: float = 0.0
 ) -> Laid:
-    """A run in blocks, with heads away from joints that are `fixed` above and below, and from `heads` below [m].
+    """Divide a run into blocks with head joints away from `fixed` joints above and below, and from `heads` below [m].
 
     apart: how far heads of both courses are from each other, in full blocks.
     """
@@ -115,7 +115,7 @@ def laid(
 
 @lru_cache(maxsize=4096)
 def _laid(ends: RunEnds, bond: CourseBond, near: tuple[float, ...], below: tuple[float, ...], apart: float) -> Laid:
-    """The same; courses repeat each other."""
+    """Divide a run into blocks, cached for courses that repeat each other."""
     fixed, heads, length = np.array(near), np.array(below), bond.length
     if ends.length <= length * (1.0 + SAME):
         return Laid(np.zeros(0), CUT * (1.0 - ends.length / length) ** 2)
@@ -136,7 +136,7 @@ def _laid(ends: RunEnds, bond: CourseBond, near: tuple[float, ...], below: tuple
 
 
 def _places(ends: RunEnds, bond: CourseBond, avoid: np.ndarray) -> np.ndarray:
-    """Where heads may be [m], in order, each once."""
+    """Return the possible places of head joints [m], in order, each once."""
     length, first, period = bond.length, bond.first, bond.period
     count = math.ceil(ends.length / length) + 1
     steps = np.arange(-1, math.ceil(ends.length / period) + 2) * period
@@ -153,7 +153,7 @@ def _places(ends: RunEnds, bond: CourseBond, avoid: np.ndarray) -> np.ndarray:
 
 
 def _shortest(ends: RunEnds, bond: CourseBond, places: np.ndarray, costs: np.ndarray) -> Laid | None:
-    """The cheapest sequence of heads, pieces between SHORTEST and the whole of a block; None: there is none."""
+    """Find the cheapest sequence of head joints with pieces between SHORTEST and a whole block; None: there is none."""
     length, shares, headers = bond.length, bond.shares, bond.has_headers
     nodes = np.concatenate([[ends.start], places, [ends.stop]])
     costs = np.concatenate([[0.0], costs, [0.0]])

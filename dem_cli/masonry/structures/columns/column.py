@@ -1,4 +1,4 @@
-"""Columns and piers: one block per course, straight or tapered, with or without a cap."""
+"""Generate columns and piers: one block per course, straight or tapered, with or without a cap."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Column(StructureBase):
 
     @property
     def profile(self) -> list[Drum]:
-        """The drums from below, whichever way they were given."""
+        """Drums of the column from below, whichever way they were given."""
         if self.block is None or self.courses is None:
             return list(self.drums)
         width, height = self.block
@@ -93,7 +93,7 @@ class Column(StructureBase):
 
 
 def build(column: Column) -> list[Block]:
-    """Blocks in local coordinates from below, the base first, the cap last."""
+    """Generate the blocks of a column from below, the base first, the cap last."""
     drums = column.profile
     levels = _levels(column, drums)
     blocks = []
@@ -115,7 +115,7 @@ def build(column: Column) -> list[Block]:
 
 
 def _levels(column: Column, drums: list[Drum]) -> np.ndarray:
-    """Heights of the joints [m], (n + 1,)."""
+    """Return the heights of the joints [m], (n + 1,)."""
     if column.block is None or column.courses is None:
         return np.concatenate([[0.0], np.cumsum([drum.height for drum in drums])])
     return np.arange(column.courses + 1) * column.block[1]

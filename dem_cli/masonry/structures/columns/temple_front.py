@@ -1,4 +1,4 @@
-"""Colonnades and temple fronts in 3D: drum columns, architrave, frieze, cornice and a pediment."""
+"""Generate colonnades and temple fronts in 3D: drum columns, architrave, frieze, cornice and a pediment."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ class TempleFront(StructureBase):
 
 
 def build(front: TempleFront) -> list[Block]:
-    """Blocks in local places: base, column by column from below, the courses above them, the pediment."""
+    """Generate the blocks of a temple front: base, column by column from below, the courses above, the pediment."""
     axes, shaft = front.axes, front.column
     blocks = []
     if front.base:
@@ -126,7 +126,7 @@ def build(front: TempleFront) -> list[Block]:
 
 
 def _triangle(heads: Sequence[float], level: float, rise: float) -> list[np.ndarray]:
-    """A triangle on a level, cut by upright joints, (n, 2) each; places of both ends and of the joints [m]."""
+    """Divide a triangle by upright joints, (n, 2) each; `heads`: places of both ends and of the joints [m]."""
     end, shapes = heads[-1], []
     tops = [level + rise * (1.0 - abs(x) / end) for x in heads]
     tops[0] = tops[-1] = level
