@@ -55,7 +55,10 @@ def heads_along(length: float, stone: float, shift: float) -> np.ndarray:
 
 
 def side_of_crown(course: int, number: int, count: int) -> str:
-    """Return the row of a voussoir by its course and its number from 1 of `count`: "" except next to a crown joint."""
+    """Return the row of a voussoir by its course and its number from 1 of `count`: "" except next to a crown joint.
+
+    There the uppermost courses of both sides have the same number and meet in a bed: rows "left" and "right".
+    """
     if 2 * course != count:
         return ""
     return "left" if number == course else "right"
