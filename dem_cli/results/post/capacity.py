@@ -1,4 +1,4 @@
-"""capacity.png: load multiplier over displacement, up to failure and beyond, its bilinear system, curves of tests."""
+"""Draw capacity.png: load multiplier over displacement, up to failure and beyond, bilinear system, test curves."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ZOOM_FROM = 6.0  # a second panel where the collapse goes this many times farth
 
 
 class CapacityAxis(NamedTuple):
-    """Displacements that loads are drawn against."""
+    """Displacement axis of a capacity curve."""
 
     values: np.ndarray  # of each row of the history [m]
     label: str
@@ -26,17 +26,17 @@ class CapacityAxis(NamedTuple):
 
     @property
     def farthest(self) -> float:
-        """Largest size [m]."""
+        """Largest absolute displacement [m]."""
         return float(np.abs(self.values).max(initial=0.0))
 
     @property
     def signed(self) -> bool:
-        """Whether it is the one that was controlled, which has a sign."""
+        """Tell whether the displacement is the controlled one, which has a sign."""
         return self.label != LARGEST
 
 
 def capacity_axis(results: Results) -> CapacityAxis:
-    """Displacement axis of the loads of a run."""
+    """Return the displacement axis of the loads of a run."""
     history, summary = results.history, results.summary
     curve = summary.get("capacity_curve")
     turns: list[dict[str, Any]] = summary.get("turning_points") or [{}]
@@ -53,7 +53,9 @@ def capacity_axis(results: Results) -> CapacityAxis:
 
 
 def _of_monitor(results: Results, name: str, curve: Mapping[str, Any] | None) -> CapacityAxis:
-    """The monitor that was controlled, since the structure was at rest; of a curve as it begins, upwards."""
+    """Return the displacement axis of the controlled monitor from rest; positive in the initial direction of a
+    curve.
+    """
     values = results.monitors[name]
     rest = np.flatnonzero(results.history["stage"] == "gravity")
     values = values - (values[rest[-1]] if len(rest) else 0.0)
@@ -63,7 +65,7 @@ def _of_monitor(results: Results, name: str, curve: Mapping[str, Any] | None) ->
 
 
 def of_frames(results: Results, axis: CapacityAxis, frames: Sequence[Mapping[str, Any]]) -> list[float]:
-    """Displacement of frames on an axis [m]: of the row of their step and load. frames: as the view has them."""
+    """Return the displacement of frames on an axis [m], by their step and load. frames: as the view has them."""
     if not axis.signed:
         return [frame["displacement"] for frame in frames]
     steps, loads = results.history["step"], results.history["load"]
@@ -97,7 +99,7 @@ def draw_capacity(results: Results, path: Path) -> None:
 
 
 def _title(summary: Mapping[str, Any], panel: int, panels: int) -> str:
-    """What a panel shows, and in the first one whose stiffness elastic displacements have."""
+    """Return the title of a panel, with the stiffness of elastic displacements in the first one."""
     parts = [("up to failure", "whole collapse")[panel]] if panels > 1 else []
     ratio = summary.get("curve_joint_stiffness")
     if ratio and panel == 0:
@@ -106,7 +108,7 @@ def _title(summary: Mapping[str, Any], panel: int, panels: int) -> str:
 
 
 def off_the_load(summary: Mapping[str, Any]) -> str:
-    """What to say of a curve that misses the failure load by more than may be drawn as a capacity; else nothing."""
+    """Return the remark on a curve that misses the failure load by more than a tolerance; else empty."""
     peak, load = summary.get("peak_of_curve"), summary.get("failure_load")
     if not summary.get("curve_off_the_load") or not peak or not load:
         return ""
