@@ -117,7 +117,7 @@ def off_the_load(summary: Mapping[str, Any]) -> str:
 
 
 def _say(axis: Any, words: str) -> None:
-    """Words over a curve, that go with the picture wherever it goes."""
+    """Write a remark over a curve, which stays part of the picture."""
     box = {"boxstyle": "round", "fc": "white", "ec": style.FAILURE, "alpha": 0.9}
     axis.text(
         0.98, 0.97, words, transform=axis.transAxes, ha="right", va="top", fontsize=9, color=style.FAILURE, bbox=box,
@@ -126,7 +126,7 @@ def _say(axis: Any, words: str) -> None:
 
 
 def _draw_legend(figure: Any, handles: list[Any], labels: list[str]) -> None:
-    """Below the panels, in as few rows as are no wider than the figure."""
+    """Draw the legend below the panels, in as few rows as fit the width of the figure."""
     for rows in range(1, max(1, len(labels)) + 1):
         columns = -(-max(1, len(labels)) // rows)
         legend = figure.legend(handles, labels, loc="outside lower center", ncols=columns, columnspacing=1.4)
@@ -160,7 +160,7 @@ def _draw_curve(axis: Any, results: Results, along: CapacityAxis, limit: float) 
 
 
 def _draw_system(axis: Any, curve: Mapping[str, Any], factor: float) -> None:
-    """The bilinear system over its curve."""
+    """Draw the bilinear system over its curve."""
     system = curve.get("bilinear")
     if system:
         ends = [0.0, factor * system["yield_displacement"], factor * system["ultimate_displacement"]]
@@ -169,7 +169,7 @@ def _draw_system(axis: Any, curve: Mapping[str, Any], factor: float) -> None:
 
 
 def _draw_tests(axis: Any, summary: Mapping[str, Any], factor: float) -> None:
-    """Curves that the case is compared with."""
+    """Draw the reference curves of the case."""
     curves = [one for one in from_summary(summary.get("reference")) if one.get("displacements")]
     for i, one in enumerate(curves):
         x = factor * np.array(one["displacements"])
@@ -178,13 +178,13 @@ def _draw_tests(axis: Any, summary: Mapping[str, Any], factor: float) -> None:
 
 
 def with_breaks(steps: np.ndarray, *columns: np.ndarray) -> list[np.ndarray]:
-    """The columns with a gap wherever the steps start anew: another simulation of the same run."""
+    """Insert a gap into the columns wherever the steps start anew: another simulation of the same run."""
     starts = np.flatnonzero(np.diff(steps) < 0) + 1
     return [np.insert(column.astype(float), starts, np.nan) for column in columns]
 
 
 def _draw_answers(axis: Any, summary: dict[str, Any], labelled: bool) -> None:
-    """Horizontal lines: failure load with its bracket, limit analysis, reference."""
+    """Draw horizontal lines: failure load with its bracket, limit analysis, reference."""
     load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
     if load is not None:
         if bracket and None not in bracket:
