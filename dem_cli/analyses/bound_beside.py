@@ -130,7 +130,7 @@ def beside(job: CaseJob, search: FailureLoad, sim: Simulation, start: StartBound
     if limits is None or not search.low:
         return {}
     if job.case.analysis.limit:
-        _ = limits.path  # asked for
+        _ = limits.path  # computes the path
     loads = limits.loads() or start.loads
     found: dict[str, Any] = {}
     if loads is not None and (start.asked or loads.associated.upper is not None):
@@ -225,7 +225,7 @@ def status_beside(status: str, found: dict[str, Any]) -> str:
 
 
 def _clamped(job: CaseJob, search: FailureLoad, bound: float) -> list[str]:
-    """Warn where ties or bars carry more in the associated mechanism, whose joints dilate, than in the run."""
+    """Warn where ties or bars may carry more in the associated mechanism, whose joints dilate, than in the run."""
     limits = search.limits
     if not (job.model.links and search.found and limits is not None and limits.slides):
         return []

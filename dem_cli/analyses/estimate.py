@@ -249,9 +249,7 @@ def _runs(case: Case) -> Rows:
 
 
 def _path(case: Case, sim: Simulation) -> Rows:
-    """Describe the path-following search of a large structure's failure load, a lower bound without proof of
-    failure.
-    """
+    """Describe the path-following search for the failure load of a large structure, without proof of failure."""
     d, blocks = sim.model.dimension, largest_structure(sim.joints.blocks, sim.model.fixed)
     if case.analysis.kind != "pushover" or not DEFAULT.limit.too_large(blocks, d):
         return []

@@ -137,7 +137,7 @@ def following_loads(data: dict[str, Any], analysis: dict[str, Any]) -> Iterator[
 
 
 def strained_blocks(data: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Report deformable blocks where they are not supported: beside ties and bars, or on joints with too few points."""
+    """Report deformable blocks where not supported: beside ties and bars, bending in 3D, joints with too few points."""
     materials = data.get("materials")
     if not isinstance(materials, dict):
         return
@@ -218,7 +218,7 @@ def unknown_bars(data: dict[str, Any]) -> Iterator[CaseProblem]:
 
 
 def odd_cracks(data: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Report unknown joints inside cracked stones, and [[imperfection]] tables that would move pieces of a stone."""
+    """Report unknown joints inside cracked stones, and cracks beside [[imperfection]], not known together."""
     joints = names(data, "joints")
     for path, table in entries(data, "structure"):
         crack, place = table.get("crack"), (*path, "crack")

@@ -1,4 +1,4 @@
-"""[[imperfection]]: geometric imperfections, how far blocks are from what was drawn."""
+"""Table [[imperfection]]: geometric imperfections of blocks, their deviations from the drawn shape and place."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Every key of a case file as its tables declare it: meaning, unit, what is allowed, default, an example.
+"""Keys of a case file as its tables declare them: meaning, unit, allowed values, default, example.
 
 `dem explain`, docs/case.md and the key tables of docs/laws are made from nothing else. Conventions of a declaration:
 units stand in brackets in the description (`[m]`; `[-]`: a number without one), what is used where a key without a
-default value is left out follows `default: ` at its end, and `examples` has a value where the default is none.
+default value is left out follows `default: ` at its end, and `examples` has a value where there is no default.
 """
 
 from __future__ import annotations

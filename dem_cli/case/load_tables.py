@@ -1,4 +1,4 @@
-"""[[load]], [[pressure]], [[fill]], [[restraint]]: forces at points and along lines, pressure, earth, motions held."""
+"""Tables [[load]], [[pressure]], [[fill]] and [[restraint]]: point and line loads, pressure, earth, restraints."""
 
 from __future__ import annotations
 

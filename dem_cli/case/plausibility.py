@@ -190,4 +190,4 @@ def size_doubts(blocks: BlockSizes) -> Iterator[CaseProblem]:
         yield CaseProblem((*blocks.paths[deepest], "thickness"), text)
 
 
-DEEP, DEEPER_THAN_WIDE = 5.0, 10.0  # [m]; a depth above both is none, whatever the structure
+DEEP, DEEPER_THAN_WIDE = 5.0, 10.0  # [m]; a depth above both is implausible for any structure

@@ -1,4 +1,4 @@
-"""[reference]: what the answer is compared with, where that comes from, and how near it must come."""
+"""Table [reference]: the expected value of an answer, its source, and the tolerance of the comparison."""
 
 from __future__ import annotations
 

@@ -261,7 +261,7 @@ class Monitor(Selection):
 
 
 def _point(point: tuple[float, ...]) -> str:
-    """(0.5, 2)"""
+    """Format a point: (0.5, 2)."""
     return f"({', '.join(f'{x:g}' for x in point)})"
 
 

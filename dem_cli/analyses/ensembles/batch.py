@@ -44,7 +44,7 @@ class Batch(NamedTuple):
 
 Answer = Callable[[ShakingTrial], ShakenRunResult]  # does a run, or looks it up
 Task = Callable[[Answer], None]  # asks for runs, one after the other
-Say = Callable[[int], None]  # is told how many runs are done
+Say = Callable[[int], None]  # called with the number of finished runs
 
 
 class Batcher:

@@ -28,7 +28,7 @@ class Band(NamedTuple):
 
     median: tuple[float, float]
     dispersion: tuple[float, float]
-    low: np.ndarray  # of the share below each intensity asked for, (n,)
+    low: np.ndarray  # of the share below each requested intensity, (n,)
     high: np.ndarray
 
 

@@ -168,7 +168,7 @@ def _kept(table: SweepTable) -> Iterator[tuple[int, Path]]:
 
 
 def _has_runs(table: SweepTable, names: Sequence[str]) -> bool:
-    """Test whether the runs have these columns. Raises UsageError where no run was kept."""
+    """Test whether the kept runs of a sweep have these columns."""
     from dem_cli.results.output.reader import read
     from dem_cli.results.post.labels import nearest
     from dem_cli.results.post.run_columns import tables

@@ -26,7 +26,7 @@ def joints_of(model: Model) -> DrawnJoints:
     return DrawnJoints(model)
 
 
-TOLD = {  # what the files are told, and of which class it is
+TOLD = {  # records that are written to the files, by kind, and their classes
     "frame": "Frame", "row": "HistoryRow", "samples": "Samples", "structure": "Model", "runs": "RunRow",
 }  # fmt: skip
 

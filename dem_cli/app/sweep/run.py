@@ -47,8 +47,10 @@ class PlannedSweep(NamedTuple):
 
 
 def prepared(loaded: LoadedCase, plan: SweepPlan, folder: Path, given: Sequence[Override], light: bool) -> PlannedSweep:
-    """The jobs of a plan. Raises CaseError where a listed value is wrong in all runs that have it, UsageError where
-    one that is given is changed by all of them.
+    """Create the jobs of a plan.
+
+    Raises CaseError where a listed value is wrong in all runs that have it, UsageError where all runs change a given
+    override.
 
     given: overrides of the whole sweep. light: nothing is kept that the table of answers does not need.
     """

@@ -1,4 +1,4 @@
-"""[analysis] of the case file: one table per kind, and the contract of a kind."""
+"""Table [analysis] of the case file: one table per kind of analysis, and the contract of a kind."""
 
 from __future__ import annotations
 

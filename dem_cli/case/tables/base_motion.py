@@ -1,4 +1,4 @@
-"""[motion]: ground motion, how supports move. One table, or several [[motion]], which add up."""
+"""Table [motion]: ground motion of the supports. One table, or several [[motion]], which add up."""
 
 from __future__ import annotations
 

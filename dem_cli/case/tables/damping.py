@@ -1,4 +1,4 @@
-"""[damping] of time histories: what joints and blocks lose, beside friction."""
+"""Table [damping] of time histories: energy dissipation of joints and blocks, beside friction."""
 
 from __future__ import annotations
 

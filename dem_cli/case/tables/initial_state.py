@@ -1,4 +1,4 @@
-"""[[initial]]: the initial state of blocks that start tilted, displaced or moving."""
+"""Table [[initial]]: initial state of blocks that start tilted, displaced or moving."""
 
 from __future__ import annotations
 

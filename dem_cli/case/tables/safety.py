@@ -1,4 +1,4 @@
-"""[analysis] with kind = "safety": how far a structure is from failure under given loads."""
+"""Table [analysis] with kind = "safety": how far a structure is from failure under given loads."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ def _need_surfaces(case: Case) -> bool:
 
 
 def _load(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath, table: Load) -> AppliedLoad:
-    """Compute the forces of one [[load]] on one block, on several by mass, or on the blocks under it."""
+    """Compute the forces of one [[load]] on given blocks or those under it; with `inertia` as weights of masses too."""
     found = _forces(model, surfaces, path, table)
     return found._replace(weights=-found.forces[:, -1]) if table.inertia else found
 

@@ -97,7 +97,7 @@ def odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
 
 
 def _loads_and_weight(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Iterator[CaseProblem]:
-    """Warn about dead loads without mass in a live load by mass, and about negligible live loads."""
+    """Warn about heavy dead loads without inertia, and about live loads that are negligible beside the weight."""
     weight = float(model.masses[~model.fixed].sum()) * case.gravity
     pattern = getattr(case.analysis, "pattern", None)
     pressing = [load for load in loads if load.dead and not (pattern == "mass" and load.weights.any())]
@@ -199,7 +199,7 @@ def _loose_ends(case: Case) -> Iterator[CaseProblem]:
 
 
 def _unspanned(case: Case) -> Iterator[CaseProblem]:
-    """Warn about openings of an imported outline that are cut out without a lintel."""
+    """Warn about openings of an outline that have neither lintel nor arch."""
     for i, table in enumerate(case.structure):
         if isinstance(table, Outlined) and table.outline is not None and (names := table.outline.unspanned):
             more = f" and {len(names) - 1} more have" if len(names) > 1 else " has"

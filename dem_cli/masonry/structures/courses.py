@@ -113,7 +113,7 @@ def _mirrored(pieces: Sequence[Piece]) -> list[Piece]:
 
 
 def _closers(pieces: list[Piece], length: float, below: Sequence[float]) -> list[Piece]:
-    """Place a quarter block at the left end after the adjacent header, as queen closers are."""
+    """Move a quarter block from the left end to behind the adjacent header, as queen closers are placed."""
     if len(pieces) < 3:
         return pieces
     quarter, header = pieces[0], pieces[1]

@@ -261,7 +261,7 @@ def _called(body: FileBody) -> str:
 
 
 def _elevation(loops: Sequence[tuple[str, np.ndarray]], keys: tuple[str, str]) -> DrawnElevation:
-    """The elevation with that outline, the first, and those openings. Raises KeyProblem, with the key of either."""
+    """Create the elevation from its outline, the first loop, and its openings. Raises KeyProblem with the key."""
     from dem_cli.masonry.imports.solids import closed_outline
 
     count = sum(len(loop) for _, loop in loops)
@@ -291,14 +291,14 @@ def _elevation(loops: Sequence[tuple[str, np.ndarray]], keys: tuple[str, str]) -
 
 
 def _onto(values: np.ndarray, levels: np.ndarray, gap: float) -> np.ndarray:
-    """Coordinates with those within `gap` of one of the levels, the lowest such one, put onto it."""
+    """Snap coordinates within `gap` of a level to it, the lowest such one."""
     places = np.minimum(np.searchsorted(levels, values - gap), len(levels) - 1)
     near: np.ndarray = levels[places]
     return np.where(np.abs(near - values) <= gap, near, values)
 
 
 def _without_doors(outline: np.ndarray) -> tuple[np.ndarray, list[DrawnOpening]]:
-    """The outline with a straight foot where it goes around doors, and these."""
+    """Straighten the foot of an outline that goes around doors; returns it and the doors."""
     on = np.flatnonzero(outline[:, 1] == 0.0).tolist()
     doors: list[DrawnOpening] = []
     dropped: set[int] = set()
@@ -313,7 +313,7 @@ def _without_doors(outline: np.ndarray) -> tuple[np.ndarray, list[DrawnOpening]]
 
 
 def _check(outline: WallOutline) -> None:
-    """Raises KeyProblem where openings reach out of the outline or into each other, or lintels have no room."""
+    """Raise KeyProblem where openings reach out of the outline or into each other, or lintels have no room."""
     key = "holes" if outline.file is None else "openings"
     drawn, (length, height) = outline.drawn, outline.drawn.size
     least, gap = SAME * length * height, SAME * polygon.size(drawn.outline)

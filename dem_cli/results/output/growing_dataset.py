@@ -52,7 +52,7 @@ class GrowingDataset:
             self._note(rows)
 
     def _fits(self, rows: np.ndarray) -> bool:
-        """Buffer rows in the current chunk if they fit; it is then written at once, in half the time."""
+        """Test whether rows fit the current chunk, and write it directly if so, in half the time."""
         piece, n = self._piece, len(rows)
         if piece is None or not rows.size or rows.dtype != self.id.dtype:
             return False

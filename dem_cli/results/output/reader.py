@@ -35,7 +35,7 @@ from dem_cli.results.output.sweep_files import RUNS
 
 Stored: TypeAlias = "np.ndarray | LaterArray"  # an array in memory, or one that is read in parts
 
-LAZY = (*FRAME_ARRAYS, "stresses")  # of frames: read when they are asked for
+LAZY = (*FRAME_ARRAYS, "stresses")  # of frames: read on access
 
 
 @dataclass(frozen=True)

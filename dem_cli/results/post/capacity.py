@@ -53,9 +53,7 @@ def capacity_axis(results: Results) -> CapacityAxis:
 
 
 def _of_monitor(results: Results, name: str, curve: Mapping[str, Any] | None) -> CapacityAxis:
-    """Return the displacement axis of the controlled monitor from rest; positive in the initial direction of a
-    curve.
-    """
+    """Return the displacement axis of the controlled monitor from rest, positive where a curve begins."""
     values = results.monitors[name]
     rest = np.flatnonzero(results.history["stage"] == "gravity")
     values = values - (values[rest[-1]] if len(rest) else 0.0)

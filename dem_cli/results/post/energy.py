@@ -61,7 +61,7 @@ def draw_energy(results: Results, path: Path) -> None:
         handles, _ = axis.get_legend_handles_labels()
         if handles:
             figure.legend(loc="outside right center")
-        figure.suptitle("Energy ledger", x=0.01, ha="left", fontsize=12, fontweight="bold")
+        figure.suptitle("Energy balance", x=0.01, ha="left", fontsize=12, fontweight="bold")
 
 
 def across(results: Results) -> Across:

@@ -16,7 +16,7 @@ from dem_cli.results.post.sweep_table import SweepTable, distinct, is_answer_in_
 
 _MOST_NUMBERS = 160  # cells that are small enough to be read
 _DARK = 0.55  # luminance below which numbers are white
-_BOTH = 0.05  # of the largest value: less on the other side of zero is nothing
+_BOTH = 0.05  # of the largest value: less on the other side of zero is neglected
 _AREAS = ("#5aa0d8", "#e0a458", "#8fbf8f", "#b39ddb", "#d98cb3", "#c9c4ba")
 _TRUTHS = {"collapsed": {False: "stands", True: "falls"}}  # what truths of a column are called
 _MOST_TICKS = 16  # names along a side

@@ -32,7 +32,7 @@ PICTURES: dict[str, Callable[..., None]] = {  # of results, into a file; some fr
 }
 SEEN_FROM = frozenset(("modes.png", "collapse.png"))  # those that show the structure
 ANIMATION = "collapse.gif"
-JOINTS = "joints.png"  # only where it is asked for
+JOINTS = "joints.png"  # only on request
 
 
 def draw_all(folder: Path, output: Path, animate: bool = False, asked: Standpoint = AS_BEST) -> list[Path]:

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from dem_cli.errors import UsageError
 
-_CHOICE = "VTK_DEFAULT_OPENGL_WINDOW"  # by which VTK lets itself be told (9.4 and later)
+_CHOICE = "VTK_DEFAULT_OPENGL_WINDOW"  # environment variable that VTK reads (9.4 and later)
 _OSMESA = ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so")
 _DEVICE, _MOST_DEVICES = 0x313F, 16  # EGL_PLATFORM_DEVICE_EXT
 MISSING = (

@@ -164,7 +164,7 @@ def draw(results: Results, frames: list[Frame], look: RenderOptions, width: int)
 
 
 def _seen(model: Model, places: list[np.ndarray]) -> np.ndarray:
-    """Return the visible corners of the blocks in space [m], (n, 3)."""
+    """Return the corners of the blocks in space, clipped to the limits of the picture [m], (n, 3)."""
     low, high = view_box.window(model, places, _AROUND)
     half = 0.5 * model.thickness[model.vertex_blocks]
     inside = [np.clip(corners, low, high) for corners in places]

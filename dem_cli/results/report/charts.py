@@ -202,7 +202,7 @@ def _energy(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Chart
             curve = with_breaks(history["step"], along.factor * history[along.column], values)
             drawn.append(line(text, curve[0], curve[1], colour))
     marks = [[along.factor * frame[along.column], None] for frame in frames]
-    chart = {"id": "energy", "title": "Energy ledger", "x": along.label, "y": "energy since the start [J]"}
+    chart = {"id": "energy", "title": "Energy balance", "x": along.label, "y": "energy since the start [J]"}
     return [{**chart, "lines": drawn, "marks": marks, "verticals": _collapse(results)}] if drawn else []
 
 

@@ -83,7 +83,7 @@ def _check_gables(building: Building, plan: Plan) -> None:
 
 
 def _passes(plan: Plan, pockets: dict[int, list[Pocket]]) -> Passes:
-    """Decide which wall passes in each course: alternately, but none through a pocket of a floor in the other wall."""
+    """Decide which wall passes in each course: in turn, but none into a floor pocket on the far face of the other."""
     held = {
         (id(junction), pocket.course): 1 - junction.of(wall)
         if pocket.across[1] <= pocket.across[0]

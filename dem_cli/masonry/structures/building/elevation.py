@@ -19,7 +19,7 @@ from dem_cli.masonry.structures.building.table import PlanWall
 from dem_cli.masonry.structures.course_layout import Interruption, interruption
 from dem_cli.masonry.structures.voids import Void
 
-SMALL = 1e-6  # of a block: shorter is nothing
+SMALL = 1e-6  # of a block: a shorter length counts as zero
 
 
 Box = tuple[float, float, float, float]  # left, low, right, high [m]

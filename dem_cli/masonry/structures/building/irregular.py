@@ -175,7 +175,7 @@ class IrregularWall:
                     yield _box(a, levels[course], b, levels[course + 1])
 
     def _core(self, span: Span, count: int) -> Span:
-        """Return the interval that is dressed around a stretch in each of the lowest courses."""
+        """Return the interval around a stretch that is dressed in each of the lowest `count` courses."""
         middle = 0.5 * (span[0] + span[1])
         around = [
             next((a, b) for a, b in found if a - self.small <= middle <= b + self.small)

@@ -216,7 +216,7 @@ def _with_turns(plan: Plan, least: float) -> Plan:
 
 
 def _is_host(plan: Plan, stems: Sequence[int], wall: int) -> bool:
-    """Test whether, of three walls at one place, both others end in this one from either side."""
+    """Test whether one of three walls at one place is that in which both others end, from either side."""
     for host in stems:
         others = [each for each in plan.met(host) if each.walls[1 - each.of(host)] in {wall, *stems} - {host}]
         if len(others) == 2 and _from_both_sides(plan, host, (others[0], others[1])):

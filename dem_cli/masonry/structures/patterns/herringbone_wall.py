@@ -90,7 +90,7 @@ def _interlocked(wall: HerringboneWall, length: float, height: float) -> Tiling:
 
 
 def _rows(wall: HerringboneWall, length: float, height: float) -> Tiling:
-    """Lay rows of parallelograms that lean right and left in turn."""
+    """Lay rows of parallelograms that lean right and left in turn, as high as a stone times the sine of its angle."""
     angle = math.radians(wall.angle_deg)
     rise, run = wall.block[0] * math.sin(angle), wall.block[0] * math.cos(angle)
     width = wall.block[1] / math.sin(angle)

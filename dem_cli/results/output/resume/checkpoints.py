@@ -25,7 +25,7 @@ from dem_cli.results.output.resume.kept_values import NotKept
 from dem_cli.results.output.resume.leftovers import damaged, fits, in_use, opened, parsed, read_at
 
 _FORMAT = 2
-MOST_BYTES = 1 << 31  # of a state, and of an entry of what was told
+MOST_BYTES = 1 << 31  # of a state, and of an entry of reported output
 _MOST_ABOUT = 1 << 20
 _ABOUT, _TOLD, _LOCK = "about.json", "told", ".lock"
 _STATE, _PART = ".state", ".part"
@@ -177,7 +177,7 @@ class Checkpoints:
         """Delete a state that is no longer needed."""
         (self.path / (name + _STATE)).unlink(missing_ok=True)
 
-    # -- what was told -----------------------------------------------------------------------------
+    # -- reported output ----------------------------------------------------------------------------
 
     def tell(self, entries: list[bytes]) -> list[tuple[int, int]]:
         """Append output records; returns where each entry begins and ends. Raises OutputError."""

@@ -77,12 +77,12 @@ class KeptStages(Stages):
         self._places = kept.told()  # of what was told, where it is kept
         self._names = set(kept.names())
         self._told = 0  # so far, by this run
-        self._waiting: list[tuple[str, Any]] = []  # told, and not kept yet
+        self._waiting: list[tuple[str, Any]] = []  # reported, and not stored yet
         self._cost = 0.01  # s of keeping a stage
         self.before = kept.seconds
         self._open = [_UnderWay("", "", [], self._begun)]
 
-    # -- what is told ------------------------------------------------------------------------------
+    # -- reported output ----------------------------------------------------------------------------
 
     def note(self, kind: str, record: Any) -> None:
         """Record output of the run."""

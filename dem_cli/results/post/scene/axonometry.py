@@ -16,7 +16,7 @@ from dem_cli.results.output.paraview.vertices import rest_vertices
 
 AZIMUTH_ASIDE, ELEVATION = 32.0, 22.0  # degrees: from the middle of the wide side, and above the ground
 _STILL = 1e-12  # of the size of the structure: who moves less does not move
-_STRAIGHT = 0.05  # of the motion: one so small to a side is none
+_STRAIGHT = 0.05  # of the motion: a smaller one to a side is neglected
 
 
 class Standpoint(NamedTuple):

@@ -13,7 +13,7 @@ from dem_cli.core.geometry.polygon import following
 from dem_cli.core.geometry.rotation import tangents_of
 from dem_cli.core.records.frames import STATES, ContactRecord
 
-_INNER = 1e-3  # of the reach of its joint: a point so close to the middle is none of its corners
+_INNER = 1e-3  # of the reach of its joint: a point closer to the middle is no corner
 
 
 class JointStrokes(NamedTuple):
