@@ -113,7 +113,7 @@ class Fluid(CaseModel):
 
 
 class Earth(CaseModel):
-    """pressure.earth: earth with a level surface, which pushes sideways with a share of its weight.
+    """pressure.earth: lateral earth pressure below a level surface, a share of the vertical stress.
 
     A stress field: sideways `coefficient` times the vertical stress, which is the weight above; on faces that look up
     as well it lies with its weight. Faces that look down have the thrust alone.
@@ -226,7 +226,7 @@ class Pressure(Selection):
 
 
 class Fill(Selection):
-    """[[fill]]: earth that lies on blocks up to a level, as dead load, and the thrust that it has.
+    """[[fill]]: earth fill on blocks up to a level: its weight as dead load, and its thrust.
 
     Its weight above each exposed face that looks up, and a share of the vertical stress sideways on inclined faces,
     and on upright ones within its extent. What lies under another block has no fill on it.
@@ -307,7 +307,7 @@ Motion = Literal["x", "y", "z", "rotation", "rotation_x", "rotation_y", "rotatio
 
 
 class Restraint(Selection):
-    """[[restraint]]: motions of blocks that something outside holds, such as the turning of a beam that is guided.
+    """[[restraint]]: prevented motions of blocks, such as the rotation of a guided beam.
 
     The centroid of each block does not move along what is held, and the block does not turn about it. What holds it
     gives whatever force or moment that takes and does no work; where the base moves, it moves along.

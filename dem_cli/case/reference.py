@@ -17,7 +17,7 @@ NO_TOLERANCE = "missing; must be a number > 0 (largest difference that passes), 
 
 
 class Reference(CaseModel):
-    """[reference], or several [[reference]]: what the answer is compared with."""
+    """[reference], or several [[reference]]: the expected value of an answer, with its tolerance."""
 
     failure_load: NonNegative | None = Field(
         default=None, description="expected load multiplier at failure [-]", examples=[0.64]

@@ -1,4 +1,4 @@
-"""The tables of a case file, in SI units; degrees only where a key says `_deg`.
+"""Tables of a case file, in SI units; degrees only where a key says `_deg`.
 
 Which structures, joint laws and analyses exist is handed in (`case_model`): this package knows no registry.
 """
@@ -92,7 +92,7 @@ class Interface(CaseModel):
 
 
 class ImposedStrain(Selection):
-    """[[strain]]: a strain that blocks would have if nothing held them: warming, swelling, drying; several add up."""
+    """[[strain]]: imposed strain of blocks, free of stress: warming, swelling, drying; several add up."""
 
     value: Annotated[float, Field(ge=-0.05, le=0.05)] = Field(
         description="strain in all directions, positive: longer; of warming: coefficient of expansion × degrees, of "
@@ -102,7 +102,7 @@ class ImposedStrain(Selection):
 
 
 class Settlement(Selection):
-    """[[settlement]]: supports that are moved; those of a structure, a pattern or a group as one rigid body."""
+    """[[settlement]]: imposed movement of supports; those of a structure, a pattern or a group as one rigid body."""
 
     displacement: Vector = Field(
         default=(0.0, 0.0), description="how far the centroid moves [m]", examples=[[0.01, -0.02]]
@@ -288,7 +288,7 @@ class ProgramStamp(CaseModel):
 
 
 class Case(CaseModel):
-    """A whole case file. `case_model` narrows structure, joints and analysis to the kinds that exist."""
+    """Complete case file. `case_model` narrows structure, joints and analysis to the kinds that exist."""
 
     title: str = Field(
         default="", description="one line; default: the name of the file", examples=["A wall of 21 blocks"]

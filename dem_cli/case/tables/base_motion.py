@@ -131,7 +131,7 @@ class HarmonicTable(MotionTable):
 
 
 class RecordTable(MotionTable):
-    """[motion] kind = "record": what was measured, or computed elsewhere."""
+    """[motion] kind = "record": a measured accelerogram, or one computed elsewhere."""
 
     kind: Literal["record"] = "record"
     file: Annotated[str, Field(min_length=1)] = Field(
@@ -190,7 +190,7 @@ class RecordTable(MotionTable):
 
 
 class ArtificialTable(SpectrumTable, MotionTable):
-    """[motion] kind = "artificial": made to fit a response spectrum."""
+    """[motion] kind = "artificial": accelerograms generated to fit a response spectrum."""
 
     kind: Literal["artificial"] = "artificial"
     duration: Positive = Field(default=20.0, description="how long each record lasts [s]")

@@ -32,5 +32,5 @@ def read(path: Path) -> Contents:
     if any(len(loop) < 3 for loop in faces):
         raise FileProblem("a face with fewer than 3 corners")
     if faces and (max(map(np.max, faces)) >= len(points) or min(map(np.min, faces)) < 0):
-        raise FileProblem(f"a face names a corner that is none; there are {len(points)}")
+        raise FileProblem(f"a face names a corner that does not exist; there are {len(points)}")
     return Contents([FileBody("", points, tuple(faces))] if faces else [])

@@ -16,7 +16,7 @@ from dem_cli.masonry.structures.bases import base_block
 
 
 class Pier(CaseModel):
-    """A pier of equal blocks, flush with the inner face of the ring, its top cut to the springing joint."""
+    """Pier of equal blocks, flush with the inner face of the ring, its top cut to the springing joint."""
 
     width: Positive = Field(description="width [m]; at least that of the springing joint", examples=[0.8])
     height: Positive = Field(
@@ -35,7 +35,7 @@ SHAPE_KEYS = {
 
 
 class Arch(StructureBase):
-    """Voussoirs over a span. Local origin: mid-span, on the ground below the piers; without piers at the
+    """Arch of voussoirs over a span. Local origin: mid-span, on the ground below the piers; without piers at the
     level of the springings (where the inner face starts). In 3D half of the thickness lies to either side of it.
 
     Block names: "<id>-<number>" for voussoirs from left to right, from 1; "<id>-left-<number>" and

@@ -31,7 +31,7 @@ class Support(CaseModel):
 
 
 class Spandrels(CaseModel):
-    """Masonry from the piers up to a level deck, in running bond, its courses cut around the arches."""
+    """Spandrel walls from the piers up to a level deck, in running bond, its courses cut around the arches."""
 
     block: tuple[Positive, Positive] = Field(description="length and height of a full block [m]", examples=[[0.8, 0.3]])
     cover: NonNegative = Field(0.0, description="from the crown of the highest arch to the deck [m]", examples=[0.3])
@@ -48,8 +48,8 @@ class BridgeFill(CaseModel):
 
 
 class Bridge(StructureBase):
-    """Arches over several spans. Local origin: left end of the first span, on the ground; in 3D in the middle of its
-    width.
+    """Arch bridge or arcade over several spans. Local origin: left end of the first span, on the ground; in 3D in the
+    middle of its width.
 
     Block names: "<id>-arch-<span>-<number>" for voussoirs from left to right, in several rows
     "<id>-arch-<span>-<number>-<row>"; "<id>-pier-<pier>-<course>", "<id>-left-<course>", "<id>-right-<course>" for

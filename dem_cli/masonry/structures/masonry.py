@@ -25,7 +25,7 @@ SMALL = 1e-6  # of a block's smaller side: what is narrower is not made
 
 
 class Core(CaseModel):
-    """Rubble between the two faces of a wall."""
+    """Core of rubble between the two faces of a wall."""
 
     thickness: Positive = Field(description="across the wall; the faces share the rest [m]", examples=[0.3])
     material: str = Field("", description="a name in [materials]; default: that of the wall", examples=["rubble"])
@@ -35,7 +35,7 @@ class Core(CaseModel):
 
 
 class Quoins(CaseModel):
-    """Larger stones at both ends of a wall, through its whole thickness, alternately long and short."""
+    """Quoins: larger stones at both ends of a wall, through its whole thickness, alternately long and short."""
 
     length: Positive = Field(description="length of the long ones [m]; the short ones are half of it", examples=[0.6])
     height: int = Field(1, ge=1, le=100, description="courses that one of them is high", examples=[2])

@@ -17,7 +17,7 @@ NARROWEST_PIECE = 1e-6  # parts of a block below this fraction of its length or 
 
 
 class Lintel(CaseModel):
-    """One block over an opening, in place of whatever it crosses."""
+    """Lintel over an opening: a single block, which replaces the stones that it crosses."""
 
     height: Positive = Field(description="height [m]", examples=[0.2])
     bearing: NonNegative = Field(description="length that rests on the wall at each side [m]", examples=[0.15])
@@ -25,7 +25,7 @@ class Lintel(CaseModel):
 
 
 class OpeningArch(CaseModel):
-    """An arch over an opening, as wide as it; courses are cut around its outer face."""
+    """Arch over an opening, of its width; courses are cut around its outer face."""
 
     shape: Literal["segmental", "semicircular", "pointed", "flat", "circle"] | None = Field(
         None,
@@ -84,7 +84,7 @@ def _height_optional(schema: dict[str, Any]) -> None:
 
 
 class Opening(CaseModel):
-    """A rectangular hole; blocks that it cuts keep what is left of them as rectangles."""
+    """Rectangular opening; the rest of each block that it cuts stays as rectangles."""
 
     model_config = ConfigDict(json_schema_extra=_height_optional)
 

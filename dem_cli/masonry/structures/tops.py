@@ -14,7 +14,7 @@ Profile = np.ndarray  # the top from left to right, (n, 2) [m]
 
 
 class Gable(CaseModel):
-    """A triangle of masonry on top of a wall."""
+    """Gable: a triangle of masonry on top of a wall."""
 
     height: Positive = Field(description="from the top of the courses to the ridge [m]", examples=[1.5])
     ridge: Positive | None = Field(

@@ -21,7 +21,7 @@ OF_OUTLINE = ("courses", "blocks_per_course", "length", "course_heights", "cours
 
 
 class Wall(BondKeys, Outlined):
-    """Blocks in courses from the bottom up. Local origin: lower left corner of the wall, on top of its base.
+    """Wall of blocks in courses from the bottom up. Local origin: lower left corner of the wall, on top of its base.
 
     In 3D half of the thickness lies to either side of the origin.
 

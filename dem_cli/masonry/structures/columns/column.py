@@ -14,7 +14,7 @@ from dem_cli.masonry.structures.bases import base_block
 
 
 class Drum(CaseModel):
-    """One block of a column, symmetric about the axis."""
+    """Drum of a column: one block, symmetric about the axis."""
 
     width: Positive = Field(description="width at its foot [m]", examples=[0.5])
     height: Positive = Field(description="height [m]", examples=[0.6])
@@ -24,7 +24,7 @@ class Drum(CaseModel):
 
 
 class Cap(CaseModel):
-    """A rectangular block on top: a capital, or a weight."""
+    """Cap of a column: a rectangular block on top, as a capital or a weight."""
 
     width: Positive = Field(description="width [m]", examples=[0.7])
     height: Positive = Field(description="height [m]", examples=[0.2])
@@ -32,8 +32,8 @@ class Cap(CaseModel):
 
 
 class Column(StructureBase):
-    """Blocks on top of each other. Local origin: on the axis of the column, at its foot, on top of the base; in 3D half
-    of the thickness lies to either side of it.
+    """Column of blocks on top of each other. Local origin: on the axis of the column, at its foot, on top of the base;
+    in 3D half of the thickness lies to either side of it.
 
     Block names: "<id>-<number>" from below, from 1; "<id>-base"; "<id>-cap".
     Shape: `block` and `courses` (tapered with `top_width`), or `drums` one by one.

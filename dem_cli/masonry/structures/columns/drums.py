@@ -14,7 +14,7 @@ from dem_cli.core.model.blocks import Block
 
 
 class Capital(CaseModel):
-    """A capital of one stone: an echinus that widens from the shaft, and a square abacus on it."""
+    """Capital of one stone: an echinus that widens from the shaft, and a square abacus on it."""
 
     width: Positive = Field(description="of the abacus [m]", examples=[1.1])
     height: Positive = Field(description="of the abacus [m]", examples=[0.2])
@@ -23,7 +23,7 @@ class Capital(CaseModel):
 
 
 class Plinth(CaseModel):
-    """A square block below the shaft."""
+    """Plinth: a square block below the shaft."""
 
     width: Positive = Field(description="width [m]", examples=[1.2])
     height: Positive = Field(description="height [m]", examples=[0.25])
@@ -121,7 +121,7 @@ def _either(shaft: Shaft, one: tuple[str, ...], other: tuple[str, ...], others: 
 
 
 class DrumColumn(Shaft, StructureBase):
-    """Round drums on top of each other in 3D. Local origin: on the axis, at the foot, on top of the base.
+    """Column of round drums in 3D. Local origin: on the axis, at the foot, on top of the base.
 
     Block names: "<id>-<number>" from below, from 1; "<id>-plinth"; "<id>-capital"; "<id>-base".
     """

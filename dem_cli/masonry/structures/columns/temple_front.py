@@ -16,7 +16,7 @@ from dem_cli.masonry.structures.columns.drums import Shaft, stones_of
 
 
 class Beam(CaseModel):
-    """A course of beams from end to end of a colonnade."""
+    """Architrave, frieze or cornice: a course of beams from end to end of a colonnade."""
 
     height: Positive = Field(description="height [m]", examples=[0.6])
     thickness: Positive | None = Field(
@@ -29,7 +29,7 @@ class Beam(CaseModel):
 
 
 class Pediment(CaseModel):
-    """A triangle on top, as long as the course below it."""
+    """Pediment: a triangle on top, as long as the course below it."""
 
     rise: Positive = Field(description="height of its top over its foot [m]", examples=[1.4])
     thickness: Positive | None = Field(

@@ -17,8 +17,8 @@ UNITS = {"head_angle_deg": "deg"}
 
 
 class CoursedWall(RandomStructure, PatternWall, coursed.CoursedPattern):
-    """Stones in irregular courses: beds kink, stones differ in height and length. Local origin: lower left corner of
-    the wall, on top of its base; in 3D half of the thickness lies to either side.
+    """Wall of stones in irregular courses: beds kink, stones differ in height and length. Local origin: lower left
+    corner of the wall, on top of its base; in 3D half of the thickness lies to either side.
 
     Block names: "<id>-<course>-<number>", both from 1, numbers from left to right; "<id>-base";
     "<id>-lintel-<opening>", "<id>-arch-<opening>-<number>"; "<id>-side-<number>", "<id>-side-<number>-left" and so on.

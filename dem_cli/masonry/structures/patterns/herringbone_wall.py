@@ -21,7 +21,7 @@ SHORTEST = 0.02  # of the mean side: shorter edges at openings collapse
 
 
 class HerringboneWall(PatternWall):
-    """Equal stones laid aslant. Local origin: lower left corner of the wall, on top of its base; in 3D half of the
+    """Wall of equal inclined stones. Local origin: lower left corner of the wall, on top of its base; in 3D half of the
     thickness lies to either side. Stones at its edges are cut; what is below a quarter of a stone is one with another.
 
     Block names: "<id>-<number>" from 1, from the lowest stone up, in rows "<id>-<row>-<number>"; "<id>-base";

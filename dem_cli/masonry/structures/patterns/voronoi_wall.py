@@ -18,8 +18,9 @@ RELAXED = 3  # Lloyd steps from which most free-standing walls stand at 35°: 6 
 
 
 class VoronoiWall(RandomStructure, PatternWall, voronoi.VoronoiPattern):
-    """Stones without courses, the Voronoi cells of random points: rubble, with many Lloyd steps polygonal masonry.
-    Local origin: lower left corner of the wall, on top of its base; in 3D half of the thickness lies to either side.
+    """Wall of stones without courses, the Voronoi cells of random points: rubble, with many Lloyd steps polygonal
+    masonry. Local origin: lower left corner of the wall, on top of its base; in 3D half of the thickness lies to either
+    side.
 
     Block names: "<id>-<number>" from 1, from the lowest stone up; "<id>-base"; "<id>-lintel-<opening>",
     "<id>-arch-<opening>-<number>"; "<id>-side-<number>", "<id>-side-<number>-left" and so on. A stone that is not

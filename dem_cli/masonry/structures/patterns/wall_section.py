@@ -20,7 +20,7 @@ from dem_cli.masonry.structures.patterns.voronoi import VoronoiPattern, stones_i
 
 
 class WallSection(RandomStructure):
-    """A wall of three leaves as seen from its end: to study how it bulges, parts and falls out of its plane. Local
+    """Cross-section of a three-leaf wall, to study how it bulges, separates and falls out of its plane. Local
     origin: foot of the left face, on top of the base; in 3D half of the length `thickness` lies to either side.
 
     Block names: "<id>-left-<course>", "<id>-right-<course>" for the faces, "<id>-through-<course>",

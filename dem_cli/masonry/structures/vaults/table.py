@@ -23,7 +23,7 @@ OF_SHAPE = {  # keys that not every shape has: those needed, those that may be g
 
 
 class Vault(StructureBase):
-    """A vault of cut stones in 3D. Local origin: in the middle of its plan, at the level where the inner face starts,
+    """Vault of cut stones in 3D. Local origin: in the middle of its plan, at the level where the inner face starts,
     with piers or a drum on the ground below them.
 
     Block names: of a barrel "<id>-<voussoir>-<number>", voussoirs from left to right as in an arch, numbers along it

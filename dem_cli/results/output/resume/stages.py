@@ -93,11 +93,11 @@ class KeptStages(Stages):
     def _tell_again(self, until: int) -> None:
         """Replay the output of a stage that is not repeated."""
         if until < self._told:
-            raise self.kept.damaged("more was told before")
+            raise self.kept.damaged("the run reported more before")
         for data in self.kept.told_at(self._places[self._told : until]):
             told = self._decoded(data, [], tuple)
             if [type(each) for each in told[:1]] != [str] or len(told[1:]) != 1:
-                raise self.kept.damaged("something was told of no kind")
+                raise self.kept.damaged("output of an unknown kind")
             self._unless_damaged(partial(self.tell, *told))
         self._told = until
 
