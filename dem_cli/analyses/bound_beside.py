@@ -46,8 +46,8 @@ class Carried(NamedTuple):
 class StartBound:
     """Associated load of the initial geometry, computed on first use.
 
-    asked: whether the case asks for limit analysis, and with it for words where there is none. model: that of the job,
-    or one with other live loads. why_not: why there is none, in words, once `loads` was asked for; None: there is one.
+    asked: whether the case requests limit analysis, and so a message where it is impossible. model: that of the job, or
+    one with other live loads. why_not: the reason why there is no bound, known once `loads` was used; None: there is one.
     """
 
     def __init__(self, job: CaseJob, model: Model | None = None) -> None:

@@ -119,7 +119,7 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
 def spread(runs: Sequence[ShakenRunResult], n_monitors: int) -> dict[str, Any]:
     """Count collapses, and compute percentiles of the peaks of the runs that stood: a list, None where none did.
 
-    still_moving: those of which nobody knows it, when the time after the motion is over; neither standing nor fallen.
+    still_moving: runs whose blocks still move when the time after the motion is over; neither standing nor fallen.
     """
     stood = [run.peaks for run in runs if run.collapsed is False]
     peaks = np.array(stood).reshape(len(stood), n_monitors)

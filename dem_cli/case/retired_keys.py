@@ -28,7 +28,7 @@ RETIRED: tuple[RetiredKey, ...] = ()
 def rename(data: dict[str, Any], overridden: Collection[KeyPath] = ()) -> tuple[list[CaseProblem], list[CaseProblem]]:
     """Rename retired keys in `data` in place; returns the warnings and the problems.
 
-    overridden: key paths that an override asked for; by an old name it counts more than the new one in the file.
+    overridden: key paths of overrides; by an old name it counts more than the new one in the file.
     """
     warned: list[CaseProblem] = []
     refused: list[CaseProblem] = []

@@ -401,7 +401,7 @@ def case_model(
 
     tables: classes of [calibration], [damping] and [[initial]] by key; one that is left out does not exist.
     motions: kinds of the [motion] tables; links: tables of links, and those by name that they name, by their key.
-    left_out: keys that the files of this class do not have, so that nobody needs to know what they may say.
+    left_out: keys that the files of this class do not have, so that their tables need not be known.
     """
     structure = one_of(structures, "kind") if structures else Any
     joint = one_of(laws, "law", default=DEFAULT_LAW)

@@ -35,7 +35,7 @@ class ShakenRunResult(NamedTuple):
 
     collapsed: bool | None  # before the time after the motion was over; None: it failed, or still moved then
     time: float | None  # of the collapse [s]
-    how: str  # the block that collapsed and how, that nobody knows whether one will, or why the run failed
+    how: str  # the block that collapsed and how, that the end is not known, or why the run failed
     peaks: tuple[float, ...]  # largest absolute value of each monitor, up to the collapse
     steps: int
     closure: float | None  # energy error over the largest energy

@@ -26,7 +26,7 @@ class BatchOptions(NamedTuple):
 
     threads: int | None = None  # of an analysis that consists of many runs, None: all cores; of a run itself, None: one
     resume: bool = False  # go on where an interrupted one stopped
-    keeping: Keeping | None = DEFAULT_KEEPING  # stages of one run; None: nobody will ask for them
+    keeping: Keeping | None = DEFAULT_KEEPING  # stages of one run; None: none are stored
 
 
 def usable_cores() -> int:

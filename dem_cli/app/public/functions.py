@@ -71,7 +71,7 @@ def run(
                 structure together, None: one
     resume      go on where an interrupted or killed run of the same case stopped in `out`
     force       write among files that dem did not write; those stay
-    progress    is told now and then: stage, load multiplier, control displacement [m], share of the stage or None
+    progress    called now and then with stage, load multiplier, control displacement [m], share of the stage or None
 
     Raises CaseError (the case is wrong: all mistakes at once), UsageError (arguments, a missing file, a folder that is
     not ours), OutputError (full disk, no permission). A solver that gives up raises nothing: `Result.status` is then

@@ -29,8 +29,8 @@ from dem_cli.results.post.run_columns import tables as columns_of
 class Result:
     """Results of a run. `dem_cli.run` and `dem_cli.open` create it; a `with` block, or `close()`, ends it.
 
-    Frames are read from the file when they are asked for; all else is in memory once it was asked for. Closing lets
-    go of the file, and of the results themselves where the run was not told to keep them (`out=None`).
+    Frames are read from the file on access; all else stays in memory after its first use. Closing releases the file,
+    and deletes the results of a run that keeps none (`out=None`).
     """
 
     def __init__(self, folder: Path, temporary: Path | None = None):

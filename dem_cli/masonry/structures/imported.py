@@ -133,7 +133,7 @@ class ImportedStructure(NamedTuple):
 
     blocks: list[Block]
     notes: list[str]
-    divided: dict[str, int]  # names in the file with several solids that nobody said what they are, and how many
+    divided: dict[str, int]  # names of several solids for which `shells` is not given, and how many
 
 
 def build(table: Import) -> list[Block]:

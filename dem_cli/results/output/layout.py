@@ -1,7 +1,7 @@
 """Layout of results.h5: meaning, units, axes, columns and kind of every dataset and attribute.
 
-Whoever writes a dataset takes its attributes from here and can write no other; whoever reads one is told where it is
-not what is said here (output/integrity/); docs/results.md is made of the same declarations (scripts/docs --write).
+Writers of datasets take their attributes from here and can write no others; readers check datasets against them
+(output/integrity/); docs/results.md is generated from the same declarations (scripts/docs --write).
 """
 
 from __future__ import annotations

@@ -124,7 +124,7 @@ class Frames(Sequence[Frame]):
 def read(folder: Path | str, *, lazy: bool = False) -> Results:
     """Read the results in `folder`; UsageError where there are none, DamagedResults where they are damaged.
 
-    lazy: frames are read when they are asked for, from a file that the caller closes by `Results.source`.
+    lazy: frames are read on access, from a file that the caller closes by `Results.source`.
     """
     folder = Path(folder)
     require_folder(folder)

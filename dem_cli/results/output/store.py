@@ -1,6 +1,6 @@
 """Write the results of a run as it proceeds, in results.h5 (float64) and files for ParaView.
 
-What results.h5 holds is declared in output/layout.py and told in docs/results.md. `/VTKHDF` in it is a link to that of
+What results.h5 holds is declared in output/layout.py and described in docs/results.md. `/VTKHDF` in it is a link to that of
 blocks.vtkhdf, for those who open results.h5 itself.
 """
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from dem_cli.errors import UsageError
 
-Describe = Callable[[str], tuple[str, str]]  # a key of the case file -> its meaning and unit; "" where nobody knows
+Describe = Callable[[str], tuple[str, str]]  # a key of the case file -> its meaning and unit; "" where unknown
 
 
 class Quantity(NamedTuple):

@@ -158,7 +158,7 @@ def _draw_family(
             continue
         alone = {"ls": _ALONE} if table.columns[y][i] is None else {}
         ends = [heights.factor * end for end in (low, high) if end is not None]
-        mark = "_" if high is not None else "^"  # it stands there, and nobody knows how far it goes
+        mark = "_" if high is not None else "^"  # a lower bound alone
         axis.plot([at[i]] * len(ends), ends, color=look["color"], lw=1.0, marker=mark, ms=6.0, mew=1.0, **alone)
 
 

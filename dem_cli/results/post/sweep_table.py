@@ -16,7 +16,7 @@ from dem_cli.results.output.csv_cells import text_of
 from dem_cli.results.output.sweep_files import CSV, FACTS, IDENTITY_COLUMNS
 from dem_cli.results.post.labels import nearest, plain, unknown
 
-ANSWER_COLUMNS = (  # what is drawn where nobody says: the first of these that has values
+ANSWER_COLUMNS = (  # drawn by default: the first of these that has values
     "failure_load", "safety_factor", "critical_value", "median", "collapsed", "collapse_time",
 )  # fmt: skip
 

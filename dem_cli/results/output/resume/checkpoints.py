@@ -1,8 +1,8 @@
 """Checkpoints of a run in a hidden folder beside its results: states by name, and the output so far.
 
 It is made with the first checkpoint, minutes into a run, and goes once the results are in place. A state that a kill
-cut short does not exist: it gets its name when it is whole. Of what was told, the last entry that was cut short is
-dropped. What is whole and yet not what was written is damaged, and no run goes on from there. Only plain files of the
+cut short does not exist: it gets its name when it is whole. Of the reported output, a last entry that was cut short
+is dropped. What is whole and yet not what was written is damaged, and no run goes on from there. Only plain files of the
 folder are opened, as `opened` says: whoever made the folder chooses none elsewhere.
 """
 
@@ -37,9 +37,9 @@ _NAME = re.compile(r"[0-9]+(-[0-9]+)*\+?")  # of a state
 class Checkpoints:
     """Checkpoints of one run.
 
-    what    gives the facts that must be the same for a run to go on: {words for users: text}; asked for when needed
-    resume  whether what is there is wanted; raises UsageError where it was made of something else, or where there is
-            some and nobody asked for it
+    what    gives the facts that must be the same for a run to go on: {words for users: text}; called when needed
+    resume  whether to go on from existing checkpoints; raises UsageError where they are of another run, or where there
+            are some and resume is False
     """
 
     def __init__(self, folder: Path, name: str, what: Callable[[], Mapping[str, str]], resume: bool):

@@ -28,8 +28,8 @@ class Journal:
     """Journal of finished runs: `known()` are earlier ones; `add` stores one more.
 
     what    facts that must be the same for runs to be comparable: {words for users: text}
-    resume  whether runs of before are wanted; raises UsageError where they were made of something else,
-            or where there are some and nobody asked for them
+    resume  whether to go on from earlier runs; raises UsageError where they belong to something else, or where there
+            are some and resume is False
     of      classes of a key and of values, whose fields say what they take; None: anything
     """
 

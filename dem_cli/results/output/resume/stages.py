@@ -55,14 +55,14 @@ class _Outcome(NamedTuple):
 class _Checkpoint(NamedTuple):
     """Stored checkpoint of a running stage."""
 
-    inside: int  # stages inside so far, which nobody asks for again
+    inside: int  # stages inside so far, which are not needed again
     loop: dict[str, Any]
 
 
 class KeptStages(Stages):
     """Stages of a run, stored in a folder.
 
-    tell: hands what was told before on to the results; raises Damaged where nobody tells them such a thing.
+    tell: hands output of the earlier run on to the results; raises Damaged where it is of no known kind.
     """
 
     def __init__(self, kept: Checkpoints, tell: Callable[[str, Any], None], keeping: Keeping = DEFAULT_KEEPING) -> None:
