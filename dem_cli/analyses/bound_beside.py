@@ -47,7 +47,7 @@ class StartBound:
     """Associated load of the initial geometry, computed on first use.
 
     asked: whether the case requests limit analysis, and so a message where it is impossible. model: that of the job, or
-    one with other live loads. why_not: the reason why there is no bound, known once `loads` was used; None: there is one.
+    one with other live loads. why_not: reason for the lack of a bound, known once `loads` was used; None: there is one.
     """
 
     def __init__(self, job: CaseJob, model: Model | None = None) -> None:

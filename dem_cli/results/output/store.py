@@ -1,7 +1,7 @@
 """Write the results of a run as it proceeds, in results.h5 (float64) and files for ParaView.
 
-What results.h5 holds is declared in output/layout.py and described in docs/results.md. `/VTKHDF` in it is a link to that of
-blocks.vtkhdf, for those who open results.h5 itself.
+What results.h5 holds is declared in output/layout.py and described in docs/results.md. `/VTKHDF` in it is a link to
+that of blocks.vtkhdf, for those who open results.h5 itself.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Checkpoints of a run in a hidden folder beside its results: states by name, and the output so far.
 
 It is made with the first checkpoint, minutes into a run, and goes once the results are in place. A state that a kill
-cut short does not exist: it gets its name when it is whole. Of the reported output, a last entry that was cut short
-is dropped. What is whole and yet not what was written is damaged, and no run goes on from there. Only plain files of the
+cut short does not exist: it gets its name when it is whole. Of the reported output, a last entry that was cut short is
+dropped. What is whole and yet not what was written is damaged, and no run goes on from there. Only plain files of the
 folder are opened, as `opened` says: whoever made the folder chooses none elsewhere.
 """
 
