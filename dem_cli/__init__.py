@@ -18,7 +18,7 @@ _HOMES = {"run": "functions", "load": "functions", "open": "functions", "Result"
 
 
 def __getattr__(name: str) -> object:
-    """What is public, imported when it is first asked for."""
+    """Import a public name of the package when it is first used."""
     if name not in _HOMES:
         raise AttributeError(f"module 'dem_cli' has no attribute '{name}' (public: {', '.join(__all__)})")
     from importlib import import_module

@@ -1,4 +1,4 @@
-"""Kinds of analysis, each as a record of what the storeys ask about it by its name; what they do is in analyses/."""
+"""Kinds of analysis: the properties of each kind, by name; their solvers are in analyses/."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class AnalysisKind(NamedTuple):
-    """What is known of a kind of analysis without solving anything."""
+    """Properties of a kind of analysis that are known without running it."""
 
     title: str  # for people
     shakes: bool = False  # it takes place in time, on a base that moves
@@ -34,5 +34,5 @@ UNKNOWN = AnalysisKind("Run")
 
 
 def kind_of(name: object) -> AnalysisKind:
-    """The record of a kind by its name; that of any run where there is no such kind."""
+    """Return the record of an analysis kind by its name; that of any run where there is no such kind."""
     return KINDS.get(name, UNKNOWN) if isinstance(name, str) else UNKNOWN

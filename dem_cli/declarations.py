@@ -1,4 +1,4 @@
-"""Declared parameters of a law, a link or a motion: meaning, unit, range, default and example, in plain Python.
+"""Declared parameters of laws, links and motions: meaning, unit, range, default and example, in plain Python.
 
 A class of `Parameters` names them; its instances are frozen records that need nothing else. The table of a case file,
 its messages and its pages follow from the declaration (case/tables/declared.py).
@@ -37,7 +37,7 @@ KEEPS: dict[str, Callable[[Any, Any], bool]] = {  # whether a value keeps each o
 
 
 class KeyProblem(ValueError):
-    """A parameter has a value that is not allowed, by itself or beside the others; raised while a table is checked.
+    """Error for a parameter whose value is not allowed, by itself or beside others; raised while a table is checked.
 
     `raise KeyProblem("0 is not allowed; must be ...", "openings", 2, "width")`: keys below that table.
     """
@@ -48,7 +48,7 @@ class KeyProblem(ValueError):
 
 
 class Limits(NamedTuple):
-    """Annotation of a number, a text or a tuple: its limits, or those on how many there are of it; None: none."""
+    """Annotation with the limits of a number, or of the length of a text or tuple; None: no limit."""
 
     gt: float | None = None
     ge: float | None = None
@@ -58,12 +58,12 @@ class Limits(NamedTuple):
 
     @property
     def named(self) -> dict[str, Any]:
-        """Those that there are."""
+        """Limits that are set, by name."""
         return {name: limit for name, limit in self._asdict().items() if limit is not None}
 
 
 class SpaceLength(NamedTuple):
-    """Annotation of a tuple of numbers: how many there are in the plane and in space."""
+    """Annotation with the lengths of a tuple of numbers in the plane and in space."""
 
     planar: int
     spatial: int
@@ -90,7 +90,7 @@ class Parameter(NamedTuple):
 
     @property
     def kind(self) -> Any:
-        """Its annotated type."""
+        """Annotated type of the parameter."""
         return _evaluated(self.annotation, self.module)
 
 
@@ -101,7 +101,7 @@ def parameter(
     examples: list[Any] | None = None,
     **limits: float,
 ) -> Any:
-    """A parameter of a class of `Parameters`; its conventions: case/keys.py.
+    """Declare a parameter of a class of `Parameters`; its conventions: case/keys.py.
 
     limits: gt, ge, lt, le; examples: where there is no default to show.
     """
@@ -112,12 +112,12 @@ def parameter(
 
 @dataclass_transform(kw_only_default=True, frozen_default=True, field_specifiers=(parameter,))
 class Parameters:
-    """Values of declared parameters by name, which nobody can change; relations among them: `check`."""
+    """Frozen values of declared parameters by name; subclasses check relations among them with `check`."""
 
     declared: ClassVar[dict[str, Parameter]] = {}
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Takes the parameters, with their annotations, out of the body of a class."""
+        """Collect the parameters, with their annotations, from the body of a subclass."""
         super().__init_subclass__(**options)
         cls.declared = {name: one for base in reversed(cls.__mro__[1:]) for name, one in _of(base).items()}
         annotations = get_annotations(cls)
@@ -132,7 +132,7 @@ class Parameters:
         cls.__annotations__ = annotations  # those that are left: else a table would evaluate all of them anew
 
     def __init__(self, **values: Any) -> None:
-        """Raises KeyProblem where a value is not allowed, TypeError where one is missing or unknown."""
+        """Set and check all values."""
         unknown = values.keys() - self.declared.keys()
         missing = {name for name, one in self.declared.items() if one.default is REQUIRED} - values.keys()
         if unknown or missing:
@@ -157,10 +157,10 @@ class Parameters:
         return set(vars(self)["_given"])
 
     def check(self) -> None:
-        """Raises KeyProblem, with the key, or ValueError where the values contradict each other."""
+        """Check relations among the values."""
 
     def with_values(self, **values: Any) -> Self:
-        """A copy with these values in place of its own, unchecked."""
+        """Return a copy with some values replaced, unchecked."""
         return self._unchecked(_values(self) | values, self.names_given | values.keys())
 
     @classmethod
@@ -171,7 +171,7 @@ class Parameters:
 
     @property
     def alone(self) -> Parameters:
-        """The same values as a record alone, also of a table of a case file that is such a record."""
+        """Record of the same values without the table class of a case file."""
         declaring: Any = next(base for base in type(self).__mro__ if "declared" in vars(base))
         values = {n: one.alone if isinstance(one, Parameters) else one for n, one in _values(self).items()}
         made: Parameters = declaring._unchecked(values, self.names_given)
@@ -191,7 +191,7 @@ class Parameters:
 
 
 def show(value: Any) -> str:
-    """A value as it stands in the file, not longer than a glance."""
+    """Format a value as it stands in the file, shortened to be read at a glance."""
     if isinstance(value, str):
         text = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in f"'{value}'")
     elif isinstance(value, bool):
@@ -217,7 +217,7 @@ def _values(record: Any) -> dict[str, Any]:
 
 @cache
 def _evaluated(annotation: str, module: str) -> Any:
-    """The type that an annotation says, with the names of the module in which it is written."""
+    """Evaluate the text of a type annotation with the names of its module."""
     return eval(annotation, vars(sys.modules[module]))
 
 
@@ -232,7 +232,7 @@ def _bounds(limits: Limits) -> tuple[tuple[Callable[[Any, Any], bool], float], .
 
 
 def _fits(value: Any, kind: Any) -> bool:
-    """Whether a value is of an annotated type and within its limits."""
+    """Test whether a value is of an annotated type and within its limits."""
     origin, parts = _taken_apart(kind)
     if origin is Annotated:
         return _fits(value, parts[0]) and all(_within(value, limit) for limit in parts[1:])
@@ -251,7 +251,7 @@ def _fits(value: Any, kind: Any) -> bool:
 
 
 def _within(value: Any, limits: Limits | SpaceLength) -> bool:
-    """Whether a value keeps within limits on it, or on how many there are of it."""
+    """Test whether a value, or its length, keeps within limits."""
     if isinstance(limits, SpaceLength):
         return len(value) in limits
     return all(keeps(value, bound) for keeps, bound in _bounds(limits))

@@ -1,4 +1,4 @@
-"""Exceptions of `dem`, everything that it raises on purpose.
+"""Exceptions that `dem` raises on purpose.
 
 DemError
 ├── CaseError        exit 2   the case file or an override is wrong (all problems at once)
@@ -27,12 +27,12 @@ KeyPath = tuple[str | int, ...]
 
 
 class DemError(Exception):
-    """Base of all; `exit_code` is what the command line returns."""
+    """Base class of all exceptions of dem; `exit_code` is what the command line returns."""
 
     exit_code = 1
 
     def _render_traceback_(self) -> list[str]:
-        """What a notebook shows of it in place of a traceback: the line that asked for it, and the message."""
+        """Return the lines that a notebook shows instead of a traceback: the line of the call, and the message."""
         import linecache
 
         trace, asked = self.__traceback__, ""
@@ -45,7 +45,7 @@ class DemError(Exception):
 
 @dataclass(frozen=True)
 class CaseProblem:
-    """One mistake in a case: where (key path such as ("structure", 0, "block")) and what.
+    """Mistake in a case: its place (key path such as ("structure", 0, "block")) and its message.
 
     `at_key` points the reader to the name instead of the value, as for an unknown key.
     """
@@ -56,7 +56,7 @@ class CaseProblem:
 
 
 class CaseError(DemError):
-    """The case is invalid. Holds every problem found, not only the first.
+    """Error of an invalid case, with every problem found.
 
     `render` turns a problem into a line of text; the reader of the file gives one that adds line and column.
     """
@@ -68,36 +68,36 @@ class CaseError(DemError):
         super().__init__("\n".join((render or plain)(problem) for problem in self.problems))
 
     def __reduce__(self) -> tuple[Callable[..., CaseError], tuple[str, tuple[CaseProblem, ...]]]:
-        """With its text, so that it may come from another process."""
+        """Pickle the error with its text, so that it can come from another process."""
         return _case_error, (str(self), self.problems)
 
 
 def _case_error(text: str, problems: tuple[CaseProblem, ...]) -> CaseError:
-    """A CaseError whose text is known."""
+    """Recreate a CaseError from its text."""
     error = CaseError(problems)
     error.args = (text,)
     return error
 
 
 class UsageError(DemError):
-    """Wrong arguments or files on the command line."""
+    """Error of wrong arguments or files on the command line."""
 
     exit_code = 2
 
 
 class MissingExtra(UsageError):
-    """An optional part of dem is not installed: `drawing needs matplotlib: pip install '/home/me/dem[plot]'`."""
+    """Error of a missing optional part of dem: `drawing needs matplotlib: pip install '/home/me/dem[plot]'`."""
 
     def __init__(self, need: str, extra: str, note: str = ""):
         super().__init__(f"{need}: {install_command(extra)}{note}")
 
     def __reduce__(self) -> tuple[Callable[..., UsageError], tuple[str]]:
-        """With its text, so that it may come from another process."""
+        """Pickle the error with its text, so that it can come from another process."""
         return UsageError, (str(self),)
 
 
 class DamagedResults(UsageError):
-    """Results that are read back are not what a run writes: `NAME is missing`, or is not what it must be.
+    """Error of damaged results that differ from what a run writes: `NAME is missing`, or has the wrong type or shape.
 
     damage: which part of them is what; folder: where they lie, named once that is known.
     """
@@ -108,24 +108,24 @@ class DamagedResults(UsageError):
         super().__init__(f"{place}these results are damaged: {damage}")
 
     def __reduce__(self) -> tuple[Callable[..., UsageError], tuple[str]]:
-        """With its text, so that it may come from another process."""
+        """Pickle the error with its text, so that it can come from another process."""
         return UsageError, (str(self),)
 
 
 class SolverError(DemError):
-    """The solver cannot go on; the message says when, where and why."""
+    """Error of the solver, which cannot go on; the message says when, where and why."""
 
     exit_code = 3
 
 
 class OutputError(DemError):
-    """Results could not be written."""
+    """Error of results that could not be written."""
 
     exit_code = 3
 
 
 def dotted(path: KeyPath) -> str:
-    """The key path as a user types it after `--set`: ("structure", 0, "block") -> structure.0.block.
+    """Format a key path as a user types it after `--set`: ("structure", 0, "block") -> structure.0.block.
 
     A name that is more than letters, digits, - and _ is quoted: materials."hard stone".density.
     """
@@ -133,10 +133,10 @@ def dotted(path: KeyPath) -> str:
 
 
 def printable(text: str) -> str:
-    """A text whose control characters are written out, such as \\x1b: a terminal shows them instead of obeying."""
+    """Escape the control characters of a text, such as \\x1b: a terminal shows them instead of obeying."""
     return CONTROLS.sub(lambda found: repr(found[0])[1:-1], text)
 
 
 def plain(problem: CaseProblem) -> str:
-    """A problem as one line, without its place in a file."""
+    """Format a problem as one line, without its place in a file."""
     return f"{dotted(problem.path)}: {problem.message}" if problem.path else problem.message

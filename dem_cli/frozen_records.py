@@ -1,4 +1,4 @@
-"""Frozen records: dataclasses that nobody can change, without functions that Python writes and compiles at each start.
+"""Frozen dataclasses without functions that Python writes and compiles at each start.
 
 Thirty groups of settings cost a tenth of the time of `dem check` otherwise. All else of a dataclass is as it was:
 `fields`, `replace`, equality, the hash, and what is written of one.
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 else:
 
     def dataclass(*, frozen: bool):
-        """The decorator of such a class, in place of that of `dataclasses`; frozen: True."""
+        """Decorate a class as a frozen dataclass, in place of the decorator of `dataclasses`; frozen: True."""
         assert frozen
 
         def made(of: type) -> type:
@@ -27,7 +27,7 @@ else:
 
 
 def __init__(self: Any, *values: Any, **named: Any) -> None:
-    """Raises TypeError where a value is missing, unknown or given twice."""
+    """Set the fields. Raises TypeError where a value is missing, unknown or given twice."""
     of, fields = type(self).__name__, self.__dataclass_fields__
     if len(values) > len(fields) or not named.keys() <= set(list(fields)[len(values) :]):
         raise TypeError(f"{of}: values of {', '.join(fields)} are expected, each once at most")

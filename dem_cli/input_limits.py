@@ -1,4 +1,4 @@
-"""Limits of what is read: how large files, drawings, cases and results may be before they are refused, and why.
+"""Limits on the size of files, drawings, cases and results, above which they are refused, with the reasons.
 
 docs/guide/limits.md shows them all, with why (scripts/studies/site/limits.py). What is beyond one of them is refused
 with one message, soon and in little memory: nothing that a file says makes the program wait or grow without end.
@@ -22,7 +22,7 @@ MOST_CORNERS = 5_000  # of one outline, face or solid: shapes take memory by the
 MOST_DRAWN = 300  # corners of the elevation of a wall with its openings
 MOST_ELEMENTS = 10_000  # of a bar
 MOST_TOGETHER = 100  # blocks in the same place
-MOST_MISTAKES = 500  # told at once
+MOST_MISTAKES = 500  # reported at once
 MOST_FRAMES = 1_000_000
 MOST_RUNS = 1_000_000
 MOST_CYCLES = 1_000_000
@@ -41,11 +41,11 @@ _AT_ONCE = 1 << 20  # bytes that are read at once
 
 
 class UnreadableInput(Exception):
-    """A file that is not read: what it is, or how large, and what is allowed; without its name."""
+    """Error of a file that is not read: its kind or size, and what is allowed; without its name."""
 
 
 def read_bounded(path: Path, most: int, pipes: bool = False) -> bytes:
-    """What a file holds, at most so many bytes. Raises UnreadableInput, and OSError where it cannot be opened.
+    """Read at most so many bytes of a file. Raises UnreadableInput, and OSError where it cannot be opened.
 
     pipes: whether it may be a pipe that something writes into, such as `<(...)` of a shell; devices never are read.
     """
@@ -65,12 +65,12 @@ def read_bounded(path: Path, most: int, pipes: bool = False) -> bytes:
 
 
 def what_else(path: Path) -> str:
-    """What a path is that is no file: `a folder`, `a pipe` or `a device`."""
+    """Name the kind of a path that is no file: `a folder`, `a pipe` or `a device`."""
     return "a folder" if path.is_dir() else "a pipe" if path.is_fifo() else "a device"
 
 
 def _all_of(handle: int, most: int, piped: bool) -> bytes:
-    """Bytes up to the end, which may be further away than a file said when it was opened."""
+    """Read to the end of a file, which may have grown since it was opened."""
     parts, total = [], 0
     while True:
         if piped and not select.select([handle], [], [], PIPE_SECONDS)[0]:

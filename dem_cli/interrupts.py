@@ -1,4 +1,4 @@
-"""Ctrl-C, SIGTERM and SIGHUP: a signal is noted when it comes and answered where the program looks for it.
+"""Handling of Ctrl-C, SIGTERM and SIGHUP: a signal is recorded and answered where the program checks for it.
 
 A KeyboardInterrupt that a handler raises can strike anywhere, between the lines of a library that holds a lock, and
 then somebody waits for that lock for ever; it can also be swallowed. So the handler only notes the signal, and `look`
@@ -25,7 +25,7 @@ _APART = 1.0  # s: pressed again within it, while the first KeyboardInterrupt un
 
 @dataclass
 class _Noted:
-    """State of interrupts in this process: whether a signal came, and who has heard of it."""
+    """State of interrupts in this process: whether a signal came, and whether it was answered."""
 
     depth: int = 0  # of `Interrupts` around this moment
     asked: bool = False  # a signal came
@@ -38,7 +38,7 @@ _noted = _Noted()
 
 
 class Interrupts:
-    """Signals are noted from here on; inside of another one it only says how they are answered.
+    """Context in which signals are recorded; nested in another one it only changes how they are answered.
 
     at_once       they are raised where they come: while nothing is promised yet that a half-done step could spoil
     ends_program  once interrupted, the program is about to end, with an exit code of its own, and nothing disturbs it
@@ -80,24 +80,26 @@ class Interrupts:
                 raise KeyboardInterrupt
 
     def over(self) -> None:
-        """The exit code is known: what comes now is too late."""
+        """Mark the exit code as final: later signals are ignored."""
         _noted.answered = self._over = True
 
 
 def asked() -> bool:
-    """Whether an interrupt came."""
+    """Tell whether an interrupt came."""
     return _noted.asked
 
 
 def look() -> None:
-    """Raises KeyboardInterrupt where one came: in the main thread once, what follows is finished; in others always."""
+    """Raise KeyboardInterrupt where one came: in the main thread once, so that the rest is finished; in others
+    always.
+    """
     if _noted.asked and not (_noted.answered and _in_main_thread()):
         _noted.answered = _noted.answered or _in_main_thread()
         raise KeyboardInterrupt
 
 
 def insist() -> None:
-    """Raises KeyboardInterrupt where one came, also where a run has answered it: the next run does not begin."""
+    """Raise KeyboardInterrupt where one came, even if a run has answered it, so that no further run begins."""
     if _noted.asked:
         _noted.answered = True
         raise KeyboardInterrupt
@@ -105,7 +107,7 @@ def insist() -> None:
 
 @contextmanager
 def at_once() -> Iterator[None]:
-    """A long call of a library that nobody else waits for: here an interrupt is raised where it comes."""
+    """Allow immediate interrupts during a long library call on which nobody else waits."""
     if not _in_main_thread():
         yield
         return
@@ -124,7 +126,7 @@ def at_once() -> Iterator[None]:
 
 
 def _note(number: int, frame: FrameType | None) -> None:
-    """The handler of all signals."""
+    """Record a signal; the handler of all signals."""
     _noted.asked = True
     now = time.monotonic()
     if _noted.at_once and not _noted.answered and now - _noted.raised >= _APART:

@@ -1,4 +1,4 @@
-"""Late modules and rare collections: what a process of this program saves of its start, a quarter of a short run.
+"""Delayed import of modules and rare garbage collection, which save a quarter of the start of a short run.
 
 Libraries name parts of others that they never use here, and what is named is loaded: scipy all of numpy, with its
 Fortran wrapper generator and its tests. And Python would look for garbage among all that is loaded again and again.
@@ -16,15 +16,15 @@ from typing import Any
 
 
 def nothing_masked(_: Any) -> bool:
-    """What `numpy.ma` says of an array while it is not loaded: nobody has made a masked one. unique and median ask."""
+    """Answer for `numpy.ma` while it is not loaded that an array is not masked; unique and median ask."""
     return False
 
 
 class AnyArray:
-    """`NDArray` of numpy's type hints, without the thousand others that come with it."""
+    """Substitute for `NDArray` of numpy's type hints that avoids importing numpy.typing."""
 
     def __class_getitem__(cls, scalar: Any) -> Any:
-        """Arrays of these numbers."""
+        """Return the type of arrays of these numbers."""
         from numpy._core.multiarray import dtype, ndarray
 
         return ndarray[tuple[Any, ...], dtype[scalar]]
@@ -56,22 +56,22 @@ SELDOM = (200_000, 10, 10)  # objects between two collections, and collections b
 
 
 class LateLoader:
-    """Loader that does nothing until something is asked for that is not known."""
+    """Module loader that delays loading until an unknown name is used."""
 
     def __init__(self, spec: ModuleSpec, known: dict[str, Any]) -> None:
         assert spec.loader is not None
         self.loader, self.known, self.lock, self.begun = spec.loader, known, RLock(), False
 
     def __getattr__(self, name: str) -> Any:
-        """What loaders say of a module, such as its source."""
+        """Forward attributes of loaders, such as the source, to the module's own loader."""
         return getattr(self.loader, name)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
-        """As the module's own loader makes it."""
+        """Create the module with its own loader."""
         return self.loader.create_module(spec)
 
     def exec_module(self, module: ModuleType) -> None:
-        """What is known, and whom to ask for the rest."""
+        """Fill the module with its known names and a hook that loads the rest."""
         module.__dict__.update(self.known, __getattr__=self._rest_of(module))
 
     def _rest_of(self, module: ModuleType) -> Callable[[str], Any]:
@@ -89,7 +89,7 @@ class LateLoader:
         return found
 
     def load(self, module: ModuleType) -> None:
-        """Loads it, once: who comes meanwhile waits, and who is loaded by it asks for what is there already."""
+        """Load the module once; other threads wait, and imports from within see what is there already."""
         with self.lock:
             if not self.begun:
                 self._load(module)
@@ -107,25 +107,25 @@ class LateLoader:
 
 
 class LoadedModule:
-    """Loader of a module that is there: the package that it is in, loaded first, has brought it."""
+    """Loader of a module that the import of its package has already loaded."""
 
     def __init__(self, module: ModuleType) -> None:
         self.module, self.spec = module, module.__spec__
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
-        """The module."""
+        """Return the loaded module."""
         return self.module
 
     def exec_module(self, module: ModuleType) -> None:
-        """Nothing but to leave it as it was."""
+        """Leave the loaded module as it is."""
         module.__spec__ = self.spec
 
 
 class LateModules:
-    """Finder of modules that are loaded when something in them is first asked for."""
+    """Import finder of modules that are loaded on first use."""
 
     def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
-        """Of a module that may wait, or that is in a package that has waited until now."""
+        """Find a module that may be loaded late, or whose package was delayed until now."""
         package = sys.modules.get(name.rpartition(".")[0])
         late = package and package.__spec__ and package.__spec__.loader
         if package is not None and isinstance(late, LateLoader):
@@ -141,7 +141,7 @@ class LateModules:
 
 
 def start_lightly() -> None:
-    """For a process that is this program's own; once, before it imports much."""
+    """Enable delayed imports in a process of this program, once, before it imports much."""
     if not any(isinstance(finder, LateModules) for finder in sys.meta_path):
         sys.meta_path.insert(0, LateModules())
         gc.set_threshold(*SELDOM)

@@ -1,4 +1,4 @@
-"""Registration of kinds by name: joint laws, links and the like, each imported when it is first asked for."""
+"""Registry of kinds by name: joint laws, links and the like, each imported on first use."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Kind = TypeVar("Kind")
 
 
 class Registered(Mapping[str, Kind], Generic[Kind]):
-    """Kinds by name; a place is a module and what the kind is called there."""
+    """Registry of kinds by name; a place is a module and the name of the kind in it."""
 
     def __init__(self, places: Mapping[str, tuple[str, str]]) -> None:
         self._places = dict(places)

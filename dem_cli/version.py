@@ -1,4 +1,4 @@
-"""Version of dem, and how to install more of it; what a version promises stands in docs/versions.md."""
+"""Version of dem, and the command that installs its optional parts; docs/versions.md says what a version promises."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _HERE = Path(__file__).resolve().parent.parent
 
 
 def install_command(extra: str) -> str:
-    """What installs an optional part of dem, from the checkout of this one: `pip install '/home/me/dem[plot]'`."""
+    """Return the command that installs an optional part of dem: `pip install '/home/me/dem[plot]'`."""
     checkout = _checkout()
     if checkout is None:
         return f"pip install '.[{extra}]' in the folder of dem"
@@ -20,7 +20,7 @@ def install_command(extra: str) -> str:
 
 
 def _checkout() -> Path | None:
-    """The folder that dem runs in or was installed from; None where it is gone."""
+    """Find the folder that dem runs in or was installed from; None where it is gone."""
     import json
     from importlib.metadata import PackageNotFoundError, distribution
     from urllib.parse import urlparse

@@ -1,1 +1,1 @@
-"""Analyses: one file for each kind that a case may name."""
+"""Analyses of structures: one file for each kind that a case may name."""

@@ -1,4 +1,4 @@
-"""Bound beside a failure load: the associated load of limit analysis, for any kinematics, control, stiffness and law.
+"""Upper bound of a failure load: the associated load of limit analysis, for any kinematics, control and law.
 
 Above that of the geometry of the start no forces inside the friction cones are in equilibrium. A structure may carry
 more after its blocks have moved: then the bound of the geometry that it rests in says so. Where this one lies below the
@@ -29,14 +29,14 @@ WIDEST = 0.1  # of the smallest edge: gaps between blocks that have moved, over 
 
 
 class Moved(NamedTuple):
-    """The state in which a load above the bound was carried: how far blocks had moved, and the bound there."""
+    """State in which a load above the bound was carried: displacement of the blocks, and the bound there."""
 
     displacement: float  # largest of a block, since it rested under its dead loads [m]
     bound: float | None  # associated load of the geometry there; None: not known, or there is none
 
 
 class Carried(NamedTuple):
-    """An equilibrium under a live load, as FailureLoad has that of its highest one."""
+    """Equilibrium under a live load, with its state and load."""
 
     load: float  # its multiplier
     standing: SavedState
@@ -44,10 +44,10 @@ class Carried(NamedTuple):
 
 
 class StartBound:
-    """The associated load of the geometry of the start, found when first asked for.
+    """Associated load of the initial geometry, computed on first use.
 
-    asked: whether the case asks for limit analysis, and with it for words where there is none. model: that of the job,
-    or one with other live loads. why_not: why there is none, in words, once `loads` was asked for; None: there is one.
+    asked: whether the case requests limit analysis, and so a message where it is impossible. model: that of the job, or
+    one with other live loads. why_not: reason for the lack of a bound, known once `loads` was used; None: there is one.
     """
 
     def __init__(self, job: CaseJob, model: Model | None = None) -> None:
@@ -56,12 +56,12 @@ class StartBound:
         self.asked = bool(getattr(job.case.analysis, "limit", False))
 
     def upper(self) -> float | None:
-        """What rigid blocks carry at most in the geometry of the start; None: nothing is known."""
+        """Upper bound of the load multiplier of rigid blocks in the initial geometry; None: not known."""
         return None if self.loads is None else self.loads.associated.upper
 
     @cached_property
     def loads(self) -> LimitLoads | None:
-        """Limit analysis of the start, with the path where the case asks for it; None, with `why_not`, without any."""
+        """Limit analysis of the initial geometry; None, with the reason in `why_not`, where it is impossible."""
         job = self.job
         job.clock.imported("dem_cli.core.limit.analysis")
         from dem_cli.core.limit.analysis import limit_loads, require_scalable, taken_as_plane
@@ -90,7 +90,7 @@ class StartBound:
         return loads
 
     def follow_path(self, search: FailureLoad, sim: Simulation) -> None:
-        """Gives a search in geometry that moves the load of the zero-dilation path of the start as a second history.
+        """Follow the zero-dilation path of the initial geometry as a second load history of a moving-geometry search.
 
         Only where nothing but the way of loading parts them: joints as stiff as dem chooses, no gaps that close. What
         blocks carry below it because they move is no other history: then the search is left as it is.
@@ -115,14 +115,14 @@ class StartBound:
 
 
 def _differs_by_its_history(job: CaseJob, sim: Simulation) -> bool:
-    """Whether a failure load in geometry that moves is that of stiff joints with friction alone and without gaps."""
+    """Test whether a failure load with moving geometry depends on the load path: stiff joints, friction, no gaps."""
     if sim.kinematics == "fixed" or sim.properties.given or sim.properties.rough or sim.law.bonded:
         return False
     return not gaps_may_close(job.request, job.model)
 
 
 def beside(job: CaseJob, search: FailureLoad, sim: Simulation, start: StartBound) -> dict[str, Any]:
-    """Keys of the summary that say what bounds the load of a search, or why nothing does; warns where it is above.
+    """Compare the load of a search with its upper bound; returns keys of the summary and warns where it is above.
 
     sim: that of the search; it is left as it was.
     """
@@ -130,7 +130,7 @@ def beside(job: CaseJob, search: FailureLoad, sim: Simulation, start: StartBound
     if limits is None or not search.low:
         return {}
     if job.case.analysis.limit:
-        _ = limits.path  # asked for
+        _ = limits.path  # computes the path
     loads = limits.loads() or start.loads
     found: dict[str, Any] = {}
     if loads is not None and (start.asked or loads.associated.upper is not None):
@@ -152,7 +152,7 @@ def beside(job: CaseJob, search: FailureLoad, sim: Simulation, start: StartBound
 
 
 def _where_it_rests(job: CaseJob, search: FailureLoad, sim: Simulation, load: float) -> dict[str, Any]:
-    """The bound of blocks that rest only after gaps have closed: that of their geometry at the load; {}: none is known.
+    """Return the bound of blocks that rest only after gaps have closed, in their geometry at the load; {}: not known.
 
     Warns where the load is above it.
     """
@@ -168,7 +168,7 @@ def _where_it_rests(job: CaseJob, search: FailureLoad, sim: Simulation, load: fl
 
 
 def beside_path(job: CaseJob, sim: Simulation, highest: Carried, lowest: Carried, resolution: float) -> dict[str, Any]:
-    """The same keys for a load that goes to and fro: of its highest multiplier, and of its lowest where that is < 0.
+    """Compare the highest and lowest load multiplier of a cyclic path with their bounds; returns keys of the summary.
 
     sim: that of the path; it is left as it was. resolution: of loads that are compared with their bounds.
     """
@@ -196,12 +196,12 @@ def beside_path(job: CaseJob, sim: Simulation, highest: Carried, lowest: Carried
 
 
 def is_above(load: float, bound: float, resolution: float) -> bool:
-    """Whether a load lies above its bound by more than the resolution."""
+    """Test whether a load lies above its bound by more than the resolution."""
     return load - bound > resolution * abs(bound)
 
 
 def in_words(load: float, bound: float, moved: Moved, explained: bool, named: str = "") -> str:
-    """The warning for a load above its bound; explained: by how far blocks had moved.
+    """Return the warning for a load above its bound; explained: by how far blocks had moved.
 
     named: what load it is, with its value; default: the failure load.
     """
@@ -219,13 +219,13 @@ def in_words(load: float, bound: float, moved: Moved, explained: bool, named: st
 
 
 def status_beside(status: str, found: dict[str, Any]) -> str:
-    """The status of a run with what `beside` found: a load that nothing explains is not "ok"."""
+    """Return the status of a run after the comparison with its bound: an unexplained load is not "ok"."""
     above = found.get("above_the_bound")
     return ABOVE if above is not None and not above["explained"] and status == OK else status
 
 
 def _clamped(job: CaseJob, search: FailureLoad, bound: float) -> list[str]:
-    """A word where ties or bars hold more in the associated load, as joints that slide open in it, than in the run."""
+    """Warn where ties or bars may carry more in the associated mechanism, whose joints dilate, than in the run."""
     limits = search.limits
     if not (job.model.links and search.found and limits is not None and limits.slides):
         return []
@@ -238,7 +238,7 @@ def _clamped(job: CaseJob, search: FailureLoad, bound: float) -> list[str]:
 
 
 def _moved(job: CaseJob, search: FailureLoad | Carried, sim: Simulation, sense: float = 1.0) -> Moved:
-    """How far blocks had moved in the highest equilibrium, and what limit analysis says of the geometry there.
+    """Measure the displacement in the highest equilibrium, and the bound of limit analysis in that geometry.
 
     sense: 1 or −1, by which live loads are multiplied.
     """
@@ -255,9 +255,10 @@ def _moved(job: CaseJob, search: FailureLoad | Carried, sim: Simulation, sense: 
 
 
 def _bound_there(job: CaseJob, sim: Simulation, displacement: float, sense: float) -> float | None:
-    """The associated load of the blocks of a simulation where they are, on faces as drawn; with fixed geometry on the
-    joints of the start with the gaps that have closed since. displacement: how far they have moved since then, under
-    their dead loads as well [m]; sense: as in `_moved`.
+    """Compute the associated load multiplier in the displaced geometry of a simulation, on faces as drawn.
+
+    With fixed geometry the joints are those of the start, with the gaps that have closed since. displacement: how far
+    blocks have moved since the start, under their dead loads as well [m]; sense: as in `_moved`.
     """
     from dem_cli.core.limit.analysis import load_of_points, load_where_it_rests
 

@@ -1,4 +1,4 @@
-"""kind = "pushover" with control = "displacement": the capacity curve, and the proof of its peak.
+"""Trace the capacity curve: kind = "pushover" with control = "displacement", and the proof of its peak.
 
 The displacement of the live load grows from gravity to beyond the peak (analyses/curve_tracing.py). The state at the
 peak is held under a constant load a little below, from where the load is raised until failure is proved, as under load
@@ -40,7 +40,7 @@ HANGS = "the peak of the curve hangs on its increments; the load is raised from 
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
-    """Outcome of a pushover under displacement control; status "not converged" where its peak could not be proved."""
+    """Run a pushover under displacement control; status "not converged" where its peak could not be proved."""
     job = CaseJob.of_case(case, model, observer, settings)
     sim = job.moving_simulation()
     search, found = FailureLoad(), dict[str, Any]()
@@ -71,7 +71,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
 
 
 def _curve_and_peak(job: CaseJob, track: Track, search: FailureLoad, found: dict[str, Any]) -> None:
-    """The curve, then the bracket around its peak; what is found goes to `found` and `search` as it is found.
+    """Trace the curve, then bracket its peak; results go to `found` and `search` as they are found.
 
     Raises SolverError where the budget ends.
     """
@@ -106,7 +106,7 @@ def _curve_and_peak(job: CaseJob, track: Track, search: FailureLoad, found: dict
 
 
 def _missed(search: FailureLoad, peak: float, resolution: float) -> list[str]:
-    """A word where the load that was raised from gravity is not that of the peak, which hangs on the increments."""
+    """Warn where the load raised from gravity differs from the peak, which then depends on the increments."""
     if search.start.get("kind") == CURVE or not search.found or search.high is None:
         return []
     low, high = search.carried, search.high

@@ -1,4 +1,4 @@
-"""Answers of a capacity curve: peak, residual, loads at displacements, bilinear system, check against a spectrum."""
+"""Results of a capacity curve: peak, residual, loads at displacements, bilinear system, check against a spectrum."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CORNER = 2  # of a row of core/motion/eurocode.py: SOILS
 
 
 def summary(job: CaseJob, curve: CapacityCurve, force: float, scale: float) -> dict[str, Any]:
-    """What summary.json says of the curve; multipliers as users know them, displacements in m.
+    """Return the summary of the capacity curve; load multipliers of the case, displacements in m.
 
     force: sum of the forces of the live load at an internal multiplier of one [N]; scale: multiplier of users at that.
     """
@@ -50,12 +50,12 @@ def summary(job: CaseJob, curve: CapacityCurve, force: float, scale: float) -> d
 
 
 def automatic(job: CaseJob) -> bool:
-    """Whether joints have a stiffness of the solver's choice: elastic displacements and periods are then nobody's."""
+    """Test whether some joint has kn = "auto", so that elastic displacements and periods are not physical."""
     return any(joint.kn == "auto" for joint in job.case.joints.values())
 
 
 def shaken_masses(sim: Simulation, gravity: float) -> np.ndarray:
-    """Masses of the free blocks with those of dead loads that have inertia, by their share of the live load [kg].
+    """Return the masses of the free blocks, with dead loads that have inertia, by their share of the live load [kg].
 
     For pattern = "mass" alone, where the live load is the weight of all masses along a direction.
     """
@@ -68,14 +68,14 @@ def shaken_masses(sim: Simulation, gravity: float) -> np.ndarray:
 
 
 class CurveCheck:
-    """Check of a capacity curve against a spectrum: numbers for the summary, and what is to be said of it."""
+    """Check of a capacity curve against a response spectrum, with the warnings about it."""
 
     def __init__(self, job: CaseJob, sim: Simulation, table: CodeCheck) -> None:
         self.job, self.sim, self.table = job, sim, table
         self.masses = shaken_masses(sim, job.case.gravity)
 
     def run(self, found: dict[str, Any], curve: CapacityCurve, states: tuple[SavedState, SavedState]) -> dict[str, Any]:
-        """The key `check` of the summary; nothing, with a warning, where there is no answer.
+        """Return the key `check` of the summary; empty, with a warning, where there is no result.
 
         found: what the summary says of the curve. states: at rest under dead loads, and at the end of the curve.
         """
@@ -109,7 +109,9 @@ class CurveCheck:
         return {"check": told | answer}
 
     def _shape(self, before: SavedState, after: SavedState | None) -> np.ndarray:
-        """Displacements of the free blocks along the live load [m], (n_free,); ones where all move alike."""
+        """Return the displacement shape of the free blocks along the live load [m], (n_free,); ones where all move
+        alike.
+        """
         if after is None:
             return np.ones(len(self.masses))
         sim, d = self.sim, self.sim.model.dimension
@@ -122,7 +124,7 @@ class CurveCheck:
         return table.corner if table.corner is not None else SOILS[str(table.spectrum)][str(table.soil)][CORNER]
 
     def _without_mass(self) -> None:
-        """Says so where dead loads are more than weights: what they stand for has no mass that is shaken."""
+        """Warn where dead loads beyond self-weight have no inertia under shaking."""
         sim, d = self.sim, self.sim.model.dimension
         others = sim.loads.dead[sim.free, :d].copy()
         weights = self.job.case.gravity * self.masses

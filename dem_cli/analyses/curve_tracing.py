@@ -1,4 +1,4 @@
-"""Tracing of a capacity curve: in ramps, once more in longer ones, and in implicit increments where these two differ.
+"""Tracing of a capacity curve in ramps, repeated in longer ones, and in implicit increments where these two differ.
 
 Ramps are quick, but where joints are so stiff that they would be long. Where joints slip as blocks are moved, a curve
 may hang on how long ramps are; then every increment is solved as a contact problem of its own
@@ -33,7 +33,7 @@ FOLLOWING, AGAIN, BY_INCREMENTS = (
 
 
 def followed(job: CaseJob, track: Track) -> Followed | None:
-    """The displacement that the case controls instead of that of the live load (analysis.of); None: that one."""
+    """Return the controlled displacement of the case (analysis.of); None: that of the live load."""
     name = job.case.analysis.of
     if name is None:
         return None
@@ -42,7 +42,7 @@ def followed(job: CaseJob, track: Track) -> Followed | None:
 
 
 class CurveTracing:
-    """The capacity curve of a structure at rest under its dead loads; the simulation is left at the end of the curve.
+    """Capacity curve traced from rest under dead loads; the simulation is left at the end of the curve.
 
     elastic: compliance, q·u per unit of internal multiplier [J]. curve, end: the curve of the answer and the state at
     its end; increments: how that was made; hangs: its peak hangs on the increments, so that it proves nothing.
@@ -60,7 +60,7 @@ class CurveTracing:
     end: SavedState
 
     def run(self, found: dict[str, Any]) -> None:
-        """Traces it; what is known goes to `found` and, with rows and frames, out of here in any case.
+        """Trace the curve; rows, frames and keys of the summary are handed over even after an error.
 
         Raises SolverError where the budget ends.
         """
@@ -85,7 +85,7 @@ class CurveTracing:
     def _trace(
         self, kind: type[DisplacementControl], curve: CapacityCurve, until: float, drawn: _Drawing, longer: float = 1.0
     ) -> DisplacementControl:
-        """One curve, from rest under the dead loads; where it ends says why it did."""
+        """Trace one curve, from rest under the dead loads; records why it ends early."""
         self.sim.restore(self.at_rest)
         try:
             control = kind(self.sim, self.job.budget, self.elastic, drawn.watch, self.of)
@@ -97,14 +97,14 @@ class CurveTracing:
         return control
 
     def _coarser(self) -> float:
-        """Internal multiplier of the peak in longer ramps, to where the curve came to its own."""
+        """Return the internal multiplier of the peak in longer ramps, up to the displacement of the reference curve."""
         settings, resolution = self.job.settings.displacement_control, self.job.case.analysis.resolution
         near, coarse = self.curve.first_within(settings.near * resolution).way, CapacityCurve()
         self._trace(self.kind, coarse, near, _Drawing(self.track, AGAIN, near, 0), settings.coarser)
         return coarse.highest.load
 
     def _checked(self, until: float, drawn: _Drawing) -> _Drawing:
-        """Whose rows are those of the answer: where the length of ramps makes a difference, of implicit increments."""
+        """Select the rows of the answer: where the ramp length matters, those of implicit increments."""
         load, resolution = self.curve.highest.load, self.job.case.analysis.resolution
         assert self.coarse is not None
         change = abs(self.coarse - load)
@@ -130,7 +130,7 @@ class CurveTracing:
         return drawn
 
     def _turns(self) -> list[str]:
-        """A warning where the monitor that is controlled turns back."""
+        """Warn where the controlled monitor turns back."""
         end, far = self.curve.points[-1].displacement, self.curve.points[self.curve.farthest].displacement
         if self.of is None or end >= (1.0 - TURNS) * far:
             return []
@@ -140,7 +140,7 @@ class CurveTracing:
         ]
 
     def _told(self) -> dict[str, Any]:
-        """What the summary says of the curve."""
+        """Return the summary of the curve with its increments."""
         scale = self.sim.live_scale
         told = curve_answers.summary(self.job, self.curve, measures.live_force(self.sim), scale)
         told |= {"of": self.of.name if self.of is not None else None, "increments": self.increments}
@@ -149,7 +149,7 @@ class CurveTracing:
 
 
 class _Drawing:
-    """Rows and frames of a curve as it grows, kept until its peak is known, and how far it is."""
+    """Rows and frames of a growing curve, kept until its peak is known, and its progress."""
 
     LASTING = frozenset(("sim", "track", "control"))
 
@@ -163,20 +163,20 @@ class _Drawing:
     control: DisplacementControl
 
     def watch(self) -> None:
-        """Says where the curve is."""
+        """Report the progress along the curve."""
         share = min(self.control.way / self.until, 1.0) if self.until > 0.0 else None
         load, largest = self.sim.load * self.sim.live_scale, measures.largest_displacement(self.sim)
         self.track.observer.progress(self.doing, load, largest, share)
 
     def __call__(self, point: CurvePoint) -> None:
-        """One more point."""
+        """Record one more point of the curve."""
         self.rows.append(self.track.row("loading"))
         if point.way >= self.next_frame and self.wanted > 0:
             self.frames[len(self.rows)] = measures.frame(self.sim, "loading")
             self.next_frame = point.way + self.every
 
     def hand_over(self, curve: CapacityCurve) -> None:
-        """Hands over all rows and frames: where the load has fallen for good, they are those of the collapse."""
+        """Hand over all rows and frames: where the load has fallen for good, they belong to the collapse."""
         near = self.sim.settings.displacement_control.past * curve.highest.load
         held = max((number for number, point in enumerate(curve.points) if point.load >= near), default=0)
         for number, row in enumerate(self.rows, 1):
@@ -187,7 +187,7 @@ class _Drawing:
 
 
 def _ends(curve: CapacityCurve) -> list[str]:
-    """Warnings: a curve that ends early, one without a peak."""
+    """Warn about a curve that ends early, or one without a peak."""
     last = curve.points[-1]
     if curve.stopped is not None:
         return [f"the curve ends at {last.largest:.3g} m, where the run did: its points so far are kept"]

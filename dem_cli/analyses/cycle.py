@@ -1,4 +1,4 @@
-"""kind = "cycle": the load multiplier, or the displacement of the live load, follows a path of values to and fro."""
+"""Cyclic loading: kind = "cycle", the load multiplier or displacement follows a path of values to and fro."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ RESOLUTION = 0.002  # of a load that is compared with its bound, as that of a pu
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
-    """Outcome of a load path; status "ok" means that the structure stood at every load of it."""
+    """Run a cyclic load path; status "ok" means that the structure stood at every load of it."""
     job = CaseJob.of_case(case, model, observer, settings)
     job.skipped.append(f"failure search: the {job.case.analysis.control} follows the path of the case")
     sim = job.first_simulation() if case.analysis.control == "load" else job.moving_simulation()
@@ -59,12 +59,12 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
 
 
 def values_between(start: float, end: float, step: float) -> np.ndarray:
-    """Equal steps of at most `step` from start (left out) to end."""
+    """Divide an interval into equal steps of at most `step`, start left out."""
     return np.linspace(start, end, max(1, math.ceil(abs(end - start) / step - 1e-9)) + 1)[1:]
 
 
 class LoadPath:
-    """The path of a case: every value of it, after each of whose steps all forces balance.
+    """Load path of a case, followed in steps that each end in equilibrium.
 
     found: keys of the summary, as far as it has come; highest, lowest: equilibria with the largest and the least load.
     """
@@ -82,7 +82,7 @@ class LoadPath:
 
     @stage
     def walk(self) -> None:
-        """All of it, or up to where it fails."""
+        """Follow the whole path, or up to failure."""
         path, step = (0.0, *self.job.case.analysis.path), self.job.case.analysis.step
         self.sim.stages.resumed()
         while self.turn < len(path) - 1:
@@ -96,7 +96,7 @@ class LoadPath:
         self.found["status"] = "ok"
 
     def _goes_to(self, value: float, share: float) -> bool:
-        """Another value, behind a share of the path; whether forces balance there."""
+        """Go to another value of the path; returns whether the structure reaches equilibrium there."""
         sim, track = self.sim, self.track
         track.observer.progress("on the path", sim.load * sim.live_scale, measures.largest_displacement(sim), share)
         if not self.way.go(value):
@@ -114,7 +114,7 @@ class LoadPath:
         return True
 
     def _turn(self, target: float) -> None:
-        """A turning point, and the loops up to there."""
+        """Record a turning point, and the loops up to there."""
         analysis, sim = self.job.case.analysis, self.sim
         self.track.frame("loading")
         load = target if analysis.control == "load" else sim.load * sim.live_scale
@@ -130,7 +130,7 @@ class LoadPath:
 
 
 class ByLoad:
-    """Goes to multipliers, each a proven equilibrium."""
+    """Load control: goes to multipliers, each a proven equilibrium."""
 
     LASTING = frozenset(("sim", "job"))
 
@@ -138,7 +138,7 @@ class ByLoad:
         self.job, self.sim, self.elastic = job, track.sim, compliance(track.sim)[1]
 
     def go(self, load: float) -> bool:
-        """To a multiplier, as users know it."""
+        """Go to a load multiplier of the case."""
         sim = self.sim
         scale = self.elastic * max(abs(load) / sim.live_scale, self.job.case.analysis.step / sim.live_scale)
         verdict = settle_or_fail(sim, load / sim.live_scale, self.job.budget, scale, ahead=unexpected(sim))
@@ -146,7 +146,7 @@ class ByLoad:
 
 
 class ByDisplacement:
-    """Goes to displacements of the live load or of a monitor [m], to rest."""
+    """Displacement control: goes to displacements of the live load or of a monitor [m], each at rest."""
 
     LASTING = frozenset(("control",))
 
@@ -157,7 +157,7 @@ class ByDisplacement:
         self.control = DisplacementControl(track.sim, job.budget, elastic, of=followed(job, track))
 
     def go(self, displacement: float) -> bool:
-        """To a displacement [m]."""
+        """Go to a displacement [m]."""
         return self.control.go_to(displacement, self.near)
 
 

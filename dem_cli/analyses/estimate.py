@@ -1,4 +1,4 @@
-"""Estimate of a run, for `dem check`: joints, stiffness, kinematics, time step; nothing is solved.
+"""Estimate a run for `dem check`: joints, stiffness, kinematics, time step; nothing is solved.
 
 Only the kernels of detection run here; the stepping loop is not compiled.
 """
@@ -38,7 +38,7 @@ BED = np.cos(np.pi / 4)  # a bed joint has its normal within 45° of the vertica
 
 
 def describe(case: Case, model: Model) -> Rows:
-    """Label and text of each line of `dem check` that needs joints."""
+    """Describe joints, stiffness and cost of a run: label and text of each line of `dem check`."""
     if kind_of(case.analysis.kind).shakes:
         return _shaking(case, model)
     request = solver_request(case)
@@ -76,7 +76,7 @@ def describe(case: Case, model: Model) -> Rows:
 
 
 def _links(model: Model) -> Rows:
-    """Ties and bars: between which blocks, how long and stiff, and what they carry."""
+    """Describe ties and bars: connected blocks, length, stiffness and strength."""
     ids = (*model.block_ids, "a fixed point")  # FIXED_POINT is -1
     return [
         (f"{LINKS[link.kind].word} {name}", link.words(number, ids))
@@ -105,7 +105,7 @@ def _shaking(case: Case, model: Model) -> Rows:
 
 
 def _ratio(case: Case, model: Model, kinematics: str) -> float:
-    """kn·h/W of "auto" joints at the start of the run."""
+    """Return kn·h/W of "auto" joints at the start of the run."""
     if case.analysis.kind == "settlement":
         from dem_cli.analyses.settlement import stiffness_ratio as of_settlement
 
@@ -114,7 +114,7 @@ def _ratio(case: Case, model: Model, kinematics: str) -> float:
 
 
 def _blocks(model: Model, gravity: float) -> Rows:
-    """Weight and the extreme blocks among those that can move."""
+    """Describe weight and extreme sizes of the movable blocks."""
     free = np.flatnonzero(~model.fixed)
     if not len(free):
         return [("weight", "0 N: no block can move")]
@@ -126,13 +126,13 @@ def _blocks(model: Model, gravity: float) -> Rows:
 
 
 def _largest(values: np.ndarray) -> int:
-    """Index of the first of the largest values; round-off does not choose between equal ones."""
+    """Return the index of the first of the largest values; round-off does not choose between equal ones."""
     top = values.max()
     return int(np.flatnonzero(values >= top - 1e-9 * abs(top))[0])
 
 
 def _joints(case: Case, sim: Simulation) -> Rows:
-    """How many joints there are, and of what kind; a joint is a pair of faces."""
+    """Describe the number and kinds of joints; a joint is a pair of faces."""
     number = len(sim.joints.blocks)
     near = "" if sim.kinematics == "fixed" else " (with faces that may meet)"
     rows = [("joints", f"{number:,}{near}, {sim.first_points:,} contact points")]
@@ -147,7 +147,7 @@ def _joints(case: Case, sim: Simulation) -> Rows:
 
 
 def _points(case: Case, sim: Simulation, named: int) -> str:
-    """Words for a plane joint whose pressure is integrated, or whose contact points follow from its stiffness."""
+    """Describe the contact points of a plane joint, or the integration of its pressure."""
     table, layout = case.joints[sim.properties.names[named]], sim.properties.layouts[named]
     if sim.integrates and sim.joints.integrated[sim.properties.between(sim.model, sim.joints.blocks) == named].any():
         return ", pressure integrated over the faces"
@@ -158,7 +158,7 @@ def _points(case: Case, sim: Simulation, named: int) -> str:
 
 
 def _stiffness(case: Case, sim: Simulation) -> Rows:
-    """Joint stiffness in effect, and kn·h/W (h: smallest edge, W: mean block weight over its joint)."""
+    """Describe the joint stiffness in effect, and kn·h/W (h: smallest edge, W: mean block weight over its joint)."""
     scale = stiffness_scale(sim.model)
     rows = []
     for name, kn, ks in zip(sim.properties.names, sim.properties.kn, sim.properties.ks, strict=True):
@@ -170,7 +170,7 @@ def _stiffness(case: Case, sim: Simulation) -> Rows:
 
 
 def _deformation(case: Case, sim: Simulation) -> Rows:
-    """Materials whose blocks deform, and what the joints are with what they give way."""
+    """Describe deformable materials, and the compliance that they add to the joints."""
     rows, properties, joints = [], sim.properties, sim.joints
     for name, material in case.materials.items():
         young, shear = material.moduli
@@ -190,20 +190,20 @@ def _deformation(case: Case, sim: Simulation) -> Rows:
 
 
 def _range(values: np.ndarray) -> str:
-    """One number, or the smallest and the largest."""
+    """Format one number, or the smallest and the largest."""
     low, high = f"{values.min():.4g}", f"{values.max():.4g}"
     return low if low == high else f"{low} to {high}"
 
 
 def _visible(case: Case) -> str | None:
-    """Why blocks move visibly in the analysis of a case before anything fails; None: they do not."""
+    """Return the reason why blocks move visibly before failure; None: they do not."""
     if getattr(case.analysis, "control", "load") == "displacement":
         return "the live load is moved as far as the case says"
     return kind_of(case.analysis.kind).moves or None
 
 
 def _kinematics(wanted: str, moving: str | None, model: Model) -> Rows:
-    """Whether geometry moves, and which gaps stay open where it does not."""
+    """Describe the kinematics, fixed or moving geometry, and the gaps that stay open where it is fixed."""
     doubt = open_gaps_doubt(model) if moving is None else None
     gaps = [] if doubt is None else [("gaps", doubt)]
     if moving:
@@ -217,7 +217,7 @@ def _kinematics(wanted: str, moving: str | None, model: Model) -> Rows:
 
 
 def _time_step(sim: Simulation) -> str:
-    """The pseudo-step, and the joint that would limit a step with real masses."""
+    """Describe the pseudo-time step, and the joint that would limit a step with real masses."""
     joints, model = sim.joints, sim.model
     if not len(joints.kn):
         return "1 (quasi-static); there are no joints"
@@ -238,7 +238,7 @@ def _time_step(sim: Simulation) -> str:
 
 
 def _runs(case: Case) -> Rows:
-    """Of a safety analysis: what is varied, and how many runs that takes. Raises CaseError where it cannot be."""
+    """Describe the varied parameter and number of runs of a safety analysis."""
     if case.analysis.kind != "safety":
         return []
     from dem_cli.analyses.ensembles.static_values import expected, scale_of
@@ -249,7 +249,7 @@ def _runs(case: Case) -> Rows:
 
 
 def _path(case: Case, sim: Simulation) -> Rows:
-    """Of a pushover of a large structure: its failure load is where a path leads, at least; failure is not proved."""
+    """Describe the path-following search for the failure load of a large structure, without proof of failure."""
     d, blocks = sim.model.dimension, largest_structure(sim.joints.blocks, sim.model.fixed)
     if case.analysis.kind != "pushover" or not DEFAULT.limit.too_large(blocks, d):
         return []
@@ -260,7 +260,7 @@ def _path(case: Case, sim: Simulation) -> Rows:
 
 
 def _beside(case: Case, sim: Simulation) -> Rows:
-    """Second histories that a pushover computes beside its failure load; its cost holds them."""
+    """Describe second load histories that a pushover computes beside its failure load; its cost includes them."""
     d, blocks = sim.model.dimension, largest_structure(sim.joints.blocks, sim.model.fixed)
     if case.analysis.kind != "pushover" or not blocks:
         return []
@@ -279,7 +279,7 @@ def _beside(case: Case, sim: Simulation) -> Rows:
 
 
 def _memory(sim: Simulation) -> str:
-    """Largest memory of a run: the libraries, and as many states of the structure as an analysis holds at a time."""
+    """Estimate the peak memory of a run: libraries and the states of the structure that an analysis keeps."""
     saved = sim.save()
     state = len(pickle.dumps(saved, 5))
     whole, each = 1e-6 * (LIBRARIES + STATES * state), 1e-6 * state
@@ -289,12 +289,12 @@ def _memory(sim: Simulation) -> str:
 
 
 def _of_property(sim: Simulation) -> bool:
-    """Whether joints have a stiffness, or a profile, of which geometry that moves takes notice."""
+    """Test whether joints have a given stiffness or profile, which moving geometry takes into account."""
     return sim.properties.given or sim.properties.rough
 
 
 def _load(case: Case, model: Model) -> str:
-    """Loads that the multiplier λ acts on, in words."""
+    """Describe the loads that the multiplier λ scales."""
     pattern = getattr(case.analysis, "pattern", None)
     if pattern is None:
         moved = f", {len(case.settlement)} support(s) moved" if case.settlement else ""
@@ -310,7 +310,7 @@ def _load(case: Case, model: Model) -> str:
 
 
 def _side(sideways: Sequence[float]) -> str:
-    """Where a table tilts: +x, −y, or a horizontal direction."""
+    """Describe the direction in which a table tilts: +x, −y, or a horizontal direction."""
     along = [i for i, part in enumerate(sideways) if part != 0.0]
     if len(along) == 1:
         return f"{'+' if sideways[along[0]] > 0.0 else '−'}{'xy'[along[0]]}"

@@ -1,4 +1,4 @@
-"""Estimate of what a run costs, for `dem check`: CPU seconds of this core as a range, and what compiling adds once.
+"""Estimate the cost of a run for `dem check`: CPU seconds as a range, and the compile time added once.
 
 How many steps a structure takes to come to rest and to fail is not known before it does. Ranges hold nine in ten cases
 of `scripts/study costs`, which nothing was tuned to; how long a core takes for a loop of Python says how fast it is.
@@ -22,21 +22,21 @@ if TYPE_CHECKING:
 
 
 class Span(NamedTuple):
-    """The least and the most of what a run may take."""
+    """Range of the CPU time of a run."""
 
     least: float
     most: float
 
     def plus(self, least: float, most: float) -> Span:
-        """With so much more."""
+        """Add to both ends of the range."""
         return Span(self.least + least, self.most + most)
 
     def times(self, least: float, most: float) -> Span:
-        """So often."""
+        """Multiply both ends of the range."""
         return Span(self.least * least, self.most * most)
 
     def words(self) -> str:
-        """CPU seconds in words."""
+        """Format the range as CPU seconds in words."""
         low, high = duration_words(self.least), duration_words(self.most)
         return f"{low} to {high} of CPU time on one core"
 
@@ -84,7 +84,7 @@ FIRST = {  # s of compiling by dimension: geometry of the start, geometry that m
 
 
 def cost_of(case: Case, sim: Simulation, of_property: bool) -> list[tuple[str, str]]:
-    """Lines of an analysis that ends at rest; of_property: the stiffness or profile of its joints is one of theirs."""
+    """Estimate the cost of a static analysis; of_property: the stiffness or profile of its joints is given."""
     points, d, analysis = sim.first_points, sim.model.dimension, case.analysis
     costs = NANOSECONDS[d]
     few, many = (min(steps, analysis.max_steps) for steps in _steps(case, sim, of_property))
@@ -110,7 +110,7 @@ def cost_of(case: Case, sim: Simulation, of_property: bool) -> list[tuple[str, s
 
 
 def _on_this_core(span: Span, basis: str) -> str:
-    """A range, of the core of the benchmarks, in words about this one."""
+    """Describe a range of time, scaled from the core of the benchmarks to this one."""
     slower = slowness()
     speed = f"{slower:.2g} times the seconds of docs/benchmarks.md"
     return f"{span.times(slower, slower).words()} ({basis}; this core takes {speed})"
@@ -118,7 +118,7 @@ def _on_this_core(span: Span, basis: str) -> str:
 
 @cache
 def slowness() -> float:
-    """How many times as long as that of docs/benchmarks.md this core takes now, by a short loop."""
+    """Measure the slowness of this core relative to that of docs/benchmarks.md, by a short loop."""
     begun, total = time.process_time(), 0
     for i in range(PASSES):
         total += i * i
@@ -126,7 +126,7 @@ def slowness() -> float:
 
 
 def _steps(case: Case, sim: Simulation, of_property: bool) -> tuple[int, int]:
-    """Fewest and most steps of such an analysis."""
+    """Estimate the fewest and most steps of a static analysis."""
     kind, d = case.analysis.kind, sim.model.dimension
     if kind != "pushover":
         return STEPS[kind]
@@ -146,14 +146,14 @@ def _steps(case: Case, sim: Simulation, of_property: bool) -> tuple[int, int]:
 
 
 def _held_sideways(sim: Simulation) -> bool:
-    """Whether some support touches blocks that do not lie on it."""
+    """Test whether some support touches blocks sideways."""
     joints, fixed = sim.joints, sim.model.fixed
     normals = joints.frames[joints.starts[:-1], sim.model.dimension - 1]
     return bool((fixed[joints.blocks].any(axis=1) & (np.abs(normals) < UPRIGHT)).any())
 
 
 def _of_stones(sim: Simulation) -> bool:
-    """Whether hardly a block weighs what another does, as in rubble, and they are more than a column or an arch."""
+    """Test whether most blocks have different masses, as in rubble, and are more than a column or an arch."""
     masses = sim.model.masses[~sim.model.fixed]
     if not len(masses) or len(sim.joints.blocks) < BONDED * len(masses):
         return False
@@ -161,7 +161,7 @@ def _of_stones(sim: Simulation) -> bool:
 
 
 def _first(seconds: tuple[int, int]) -> str:
-    """CPU time of compiling, once, in words."""
+    """Describe the CPU time of compiling, once."""
     return (
         f"{seconds[0]} to {seconds[1]} s more, once: its loops are compiled and kept, for this kind of analysis, "
         "these joints and this version of dem"
@@ -171,7 +171,7 @@ def _first(seconds: tuple[int, int]) -> str:
 def cost_of_shaking(
     sim: DynamicSimulation, step: TimeStep, steps: int, coda: int, runs: int, softer: float | None
 ) -> list[tuple[str, str]]:
-    """Lines of time histories: so many runs, each of so many steps, with up to `coda` steps after the motion.
+    """Estimate the cost of time histories: so many runs of so many steps, with up to `coda` steps after the motion.
 
     softer: how much softer the joints of the check of stiffness are, whose steps are longer by the root of that; None:
     there is no such run.

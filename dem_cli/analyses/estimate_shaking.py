@@ -1,4 +1,4 @@
-"""Estimate of a time history, for `dem check`: frequencies, time step, steps, run time."""
+"""Estimate a time history for `dem check`: frequencies, time step, steps, run time."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SOFTER = DEFAULT.rocking.softer
 def describe_shaking(
     case: Case, request: SolverRequest, sim: DynamicSimulation, automatic: bool
 ) -> list[tuple[str, str]]:
-    """Lines of `dem check`; automatic: some joints have the stiffness that the program chose.
+    """Describe a time history for `dem check`; automatic: some joints have the stiffness that the program chose.
 
     Raises CaseError where analysis.time_step is not stable, or nothing says how long to look, as a run does.
     """
@@ -51,7 +51,7 @@ def describe_shaking(
 
 
 def _motions(case: Case) -> list[Motion]:
-    """All motions of a study, those of a single run."""
+    """Return all motions of a fragility study, or those of a single run."""
     if case.analysis.kind != "fragility":
         return motions_of(case)
     return [motion for record in records_of(case) for motion in record.components]
@@ -92,7 +92,7 @@ def _cost(
 
 
 def ground_words(motions: Sequence[Motion]) -> str:
-    """Peaks of ground motions; where several come together, each with its direction."""
+    """Describe the peaks of ground motions; where several act together, each with its direction."""
     if len(motions) < 2:
         return f"peak {max((motion.peak for motion in motions), default=0.0):.4g} m/s²"
     shown = [f"{motion.peak:.4g} m/s² along {_way(motion.direction)}" for motion in motions[:MOST_MOTIONS]]
@@ -101,7 +101,7 @@ def ground_words(motions: Sequence[Motion]) -> str:
 
 
 def _way(direction: Sequence[float]) -> str:
-    """An axis by its name, another direction by its components."""
+    """Name an axis, or give another direction by its components."""
     along = [k for k, part in enumerate(direction) if part != 0.0]
     if len(along) == 1:
         return f"{'−' if direction[along[0]] < 0.0 else ''}{'xyz'[along[0]]}"
@@ -109,7 +109,7 @@ def _way(direction: Sequence[float]) -> str:
 
 
 def _runs(case: Case, checked: bool) -> tuple[int, str]:
-    """How many runs there are at most, and why; no words for one. checked: stiffness is, by one more."""
+    """Return the largest number of runs with an explanation; checked: one more run for the stiffness."""
     analysis = case.analysis
     repeats = 1 + analysis.repeats
     words = f" × {repeats} with repeats" if repeats > 1 else ""

@@ -1,4 +1,4 @@
-"""kind = "fragility": which intensities of a set of records a structure survives.
+"""Fragility analysis, kind = "fragility": which intensities of a set of records a structure survives.
 
 Overturning is not monotone in amplitude: a structure may fall at one intensity and survive a higher one. The collapse
 intensity of a record is the lowest one at which the structure fell among those that were tried.
@@ -54,12 +54,12 @@ MOST_LISTED = 5  # runs that one warning names
 def run(
     case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT, batch: Batch | None = None
 ) -> Outcome:
-    """Outcome of all runs. Raises CaseError without any record, SolverError where no run has a result."""
+    """Run a fragility analysis. Raises CaseError without any record, SolverError where no run has a result."""
     return FragilityStudy(case, model, observer, settings, batch or Batch()).run()
 
 
 class FragilityStudy:
-    """All records at all intensities, on the structure of the case and on slightly different ones."""
+    """Fragility study of all records at all intensities, on the structure of the case and perturbed ones."""
 
     def __init__(self, case: Case, model: Model, observer: Observer, settings: Settings, batch: Batch):
         self.case, self.model, self.observer, self.batch = case, model, observer, batch
@@ -77,7 +77,7 @@ class FragilityStudy:
         self.warnings += bending_doubts(self.request, model, settings)
 
     def run(self) -> Outcome:
-        """Rest, all runs, and what they say."""
+        """Bring the structures to rest, run all trials, and summarise them."""
         self.rested = self._rest()
         if not self.rested[0].stands:
             return Outcome(self._facts() | {"status": FALLS, "collapse_intensities": None, "runs": 0})
@@ -95,7 +95,7 @@ class FragilityStudy:
         return Outcome(self._facts() | self._answer(pairs) | self._effort())
 
     def _rest(self) -> list[RestedStructure]:
-        """All structures, at rest under their dead loads."""
+        """Bring all structures to rest under their dead loads."""
         quiet, found = ProgressOnly(self.observer), []
         for number in range(1 + self.analysis.repeats):
             found.append(self._rested(number, quiet))
@@ -105,7 +105,7 @@ class FragilityStudy:
         return found
 
     def _rested(self, number: int, quiet: Observer) -> RestedStructure:
-        """One structure of the set, at rest under its dead loads."""
+        """Bring one structure of the set to rest under its dead loads."""
         variant = Variant(self.case, self.model, number, self.settings.statistics.largest_draw)
         return RestedStructure(variant, self.motions, quiet, self.settings)
 
@@ -113,7 +113,7 @@ class FragilityStudy:
         return scaled(self.records[trial.record], trial.intensity, self.analysis)
 
     def _plan(self, pairs: Sequence[tuple[int, int]]) -> tuple[list[Task], int]:
-        """Tasks, and how many runs they will ask for (of a bisection: at most)."""
+        """Plan the tasks, and the number of runs that they will take (of a bisection: at most)."""
         analysis = self.analysis
         if not analysis.bisects:
             trials = [ShakingTrial(s, r, a) for s, r in pairs for a in analysis.levels]
@@ -121,7 +121,9 @@ class FragilityStudy:
         return [bisection(analysis, s, r) for s, r in pairs], len(pairs) * runs_per_record(analysis)
 
     def _rows(self) -> list[RunRow]:
-        """All runs in the order of records, structures and intensities, whatever the order in which they came."""
+        """Return all runs in the order of records, structures and intensities, whatever the order in which they
+        finished.
+        """
         rows = []
         for trial in sorted(self.batcher.done, key=lambda t: (t.record, t.structure, t.intensity)):
             run, peak = self.batcher.done[trial], max(motion.peak for motion in self._motion(trial))
@@ -188,7 +190,7 @@ class FragilityStudy:
         self.warnings += undecided(sum(run.ending == MOVES for run in done.values()), len(done), self.coda)
 
     def _warn_about(self, answer: dict[str, Any], intervals: int) -> None:
-        """What a reader of the curve must know; intervals: different bounds of capacities."""
+        """Warn about limits of the fragility curve; intervals: number of different capacity bounds."""
         if answer["median"] is not None and intervals <= self.settings.statistics.few:
             self.warnings.append(
                 f"all collapse intensities lie in {intervals} interval{'s' * (intervals > 1)} between levels: median "
@@ -252,7 +254,7 @@ class FragilityStudy:
 
 
 def _worst(closures: Iterable[float | None]) -> float | None:
-    """The largest of the energy errors."""
+    """Return the largest of the energy balance errors."""
     return max((closure for closure in closures if closure is not None), key=abs, default=None)
 
 
@@ -265,6 +267,6 @@ def _lower(bounds: Bounds | None) -> float | None:
 
 
 def _share(found: Iterable[Outcomes], level: float) -> float | None:
-    """Share of all that were tried at a level that fell."""
+    """Return the share of runs at a level that collapsed."""
     tried = [runs[level] for runs in found if level in runs]
     return sum(tried) / len(tried) if tried else None

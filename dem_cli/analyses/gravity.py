@@ -1,4 +1,4 @@
-"""kind = "gravity": does the structure stand under its dead loads?"""
+"""Gravity analysis, kind = "gravity": does the structure stand under its dead loads?"""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
-    """Outcome of a gravity analysis; status "ok" means that it stands."""
+    """Run a gravity analysis; status "ok" means that the structure stands."""
     job = CaseJob.of_case(case, model, observer, settings)
     sim = job.first_simulation()
     track, start = job.track(sim), sim.places()

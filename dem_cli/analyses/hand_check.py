@@ -1,4 +1,4 @@
-"""Hand check of a case that is one running-bond wall: whether core/limit/rigid_wall.py applies, and its multiplier."""
+"""Closed-form check of a running-bond wall: whether core/limit/rigid_wall.py applies, and its load multiplier."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FLAT = 1e-9  # sine of the direction of the load, below which it is horizontal
 
 
 def hand_check(case: Case) -> float | None:
-    """Multiplier of the rigid part of a case that is one running-bond wall of equal courses under its own weight.
+    """Return the closed-form load multiplier of a single running-bond wall of equal courses under self-weight.
 
     None where the case is anything else: other blocks or loads, openings, a turned wall, a load that is not
     horizontal and proportional to weight.
@@ -38,7 +38,7 @@ def hand_check(case: Case) -> float | None:
 
 
 def _pushed_sideways(analysis: Any) -> bool:
-    """Whether the load is the multiplier times the weight of each block, along x (a tilting table is the same)."""
+    """Test whether the load is the multiplier times the weight of each block, along x (a tilting table is the same)."""
     pattern = getattr(analysis, "pattern", None)
     if pattern not in ("mass", "tilt"):
         return False
@@ -49,7 +49,7 @@ def _pushed_sideways(analysis: Any) -> bool:
 
 
 def _regular(wall: Any) -> bool:
-    """Half-block stagger, flush ends, equal courses, no openings, level, upright."""
+    """Test whether a wall is regular: half-block stagger, flush ends, equal courses, no openings, level, upright."""
     stagger = wall.block[0] / 2 if wall.offset is None else wall.offset
     halves = wall.bond != "stack" and np.isclose(stagger, wall.block[0] / 2) and wall.is_plain
     equal = not (wall.course_heights or wall.course_lengths or wall.openings or wall.sides)

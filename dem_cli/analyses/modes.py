@@ -1,4 +1,4 @@
-"""kind = "modes": natural frequencies and mode shapes under gravity, and joint stiffness from a measured frequency.
+"""Modal analysis, kind = "modes": natural frequencies and shapes under gravity, and calibration of joint stiffness.
 
 Gravity comes first, with geometry that moves, because it says which contact points are closed and where the blocks
 are; a time history starts from the same state. Then all is linear: closed points are springs, open ones nothing.
@@ -36,7 +36,7 @@ AXES = "xyz"
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
-    """Outcome of a modal analysis. Raises CaseError where the structure has no mode with the number asked for."""
+    """Run a modal analysis. Raises CaseError where the structure lacks the requested mode."""
     job = CaseJob.of_case(case, model, observer, settings)
     sim = _simulation(job)
     track = job.track(sim)
@@ -52,8 +52,11 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
 
 
 def _simulation(job: CaseJob) -> Simulation:
-    """On joints that are the springs that they are. With a measured frequency their stiffness is a property of the
-    structure, which has the contact points of such joints (core/laws/stiffness.py)."""
+    """Create the simulation of a modal analysis, on joints with their stiffness as springs.
+
+    With a measured frequency that stiffness is a property of the structure, which has the contact points of such
+    joints (core/laws/stiffness.py).
+    """
     sim = job.moving_simulation(elastic=True)
     if job.case.analysis.measured is None or not sim.properties.rigid.any():
         return sim
@@ -61,7 +64,7 @@ def _simulation(job: CaseJob) -> Simulation:
 
 
 def _answer(job: CaseJob, sim: Simulation) -> dict[str, Any]:
-    """Keys of the summary; the shapes go to the observer as frames."""
+    """Compute modes and calibration as keys of the summary; mode shapes go to the observer as frames."""
     wanted, model = job.case.analysis, sim.model
     job.clock.progress("modes", 0.0, 0.0, None)
     springs = {name: _springs(sim, name) for name in ("pressed", "touching")}
@@ -95,7 +98,7 @@ def _first(found: Modes) -> float | None:
 
 
 def _springs(sim: Simulation, contacts: str) -> np.ndarray:
-    """Which contact points act, by the choice of the case, (n_points,) bool."""
+    """Select the active contact points of the modal stiffness, (n_points,) bool."""
     points = closed_points(sim) if contacts == "pressed" else touching_points(sim)
     corners = sim.tracking.narrow.end_to_end(sim.model, sim.geometry)
     return points & ~corners[sim.joints.owners]
@@ -107,7 +110,7 @@ def _modes(sim: Simulation, closed: np.ndarray, count: int) -> Modes:
 
 
 def closed_points(sim: Simulation) -> np.ndarray:
-    """Contact points that answer any small motion: pressed together, or held by a bond, (n_points,) bool."""
+    """Select the contact points that resist any small motion: pressed together, or bonded, (n_points,) bool."""
     free, d = sim.free, sim.model.dimension
     weight = mean_weight(sim.loads.dead[free], sim.loads.live[free], d) if len(free) else 1.0
     closed = sim.contacts.normal > sim.settings.modes.pressed * weight
@@ -117,13 +120,13 @@ def closed_points(sim: Simulation) -> np.ndarray:
 
 
 def touching_points(sim: Simulation) -> np.ndarray:
-    """The same and all that have no gap, such as head joints that carry nothing yet, (n_points,) bool."""
+    """Select closed contact points and those without a gap, such as unloaded head joints, (n_points,) bool."""
     near = sim.measured().gaps <= sim.settings.modes.closes * sim.smallest
     return closed_points(sim) | (near & (sim.joints.kn > 0.0))
 
 
 def _bonds(sim: Simulation, points: np.ndarray, weight: float) -> np.ndarray:
-    """Whether a point that is not pressed carries tension when it is pulled a little, (n_points,) bool."""
+    """Test which open points are bonded, by their tension under a small separation, (n_points,) bool."""
     joints, contacts, memory = sim.joints, sim.measured(), sim.contacts.memory.copy()
     owner = joints.owners
     still = (0.0,) * (sim.model.dimension - 1)
@@ -138,7 +141,7 @@ def _bonds(sim: Simulation, points: np.ndarray, weight: float) -> np.ndarray:
 
 
 def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
-    """The structure moved along a mode so far that it can be seen; `step` is the number of the mode."""
+    """Create the frame of a visibly scaled mode shape; `step` is the number of the mode."""
     settings = sim.settings.modes
     model, d, rotations = sim.model, sim.model.dimension, sim.model.rotations
     free = ~model.fixed
@@ -175,7 +178,7 @@ def _doubts(job: CaseJob, found: Modes, sim: Simulation) -> None:
 
 
 def _calibration(job: CaseJob, sim: Simulation, computed: float) -> dict[str, Any]:
-    """Joint stiffness at which the mode has the measured frequency: all kn and ks times (measured/computed)².
+    """Calibrate the joint stiffness to the measured frequency: all kn and ks times (measured/computed)².
 
     That is exact where gravity closes the same points and its forces do not count. So gravity and modes are run again
     with the new stiffness, and the factor is corrected until the frequency is met.
@@ -212,7 +215,9 @@ def _calibration(job: CaseJob, sim: Simulation, computed: float) -> dict[str, An
 
 
 def _scaled(sim: Simulation, factor: float) -> dict[str, dict[str, float]]:
-    """kn and ks [Pa/m] of each named joint that has them, times a factor; the others are as stiff as their blocks."""
+    """Return kn and ks [Pa/m] of each named joint that has them, times a factor; others are as stiff as their
+    blocks.
+    """
     properties = sim.properties
     free = np.zeros(len(properties.names), bool)
     if properties.compliance is not None:
@@ -225,8 +230,10 @@ def _scaled(sim: Simulation, factor: float) -> dict[str, dict[str, float]]:
 
 
 def _with_points(case: Case, sim: Simulation, found: dict[str, dict[str, float]]) -> dict[str, dict[str, float]]:
-    """Beside kn and ks the contact points that they belong to, where the case does not say how many: time histories
-    have others (core/laws/stiffness.py)."""
+    """Add the number of contact points to calibrated kn and ks where the case does not give it.
+
+    Time histories have other contact points by default (core/laws/stiffness.py).
+    """
     layouts = zip(sim.properties.names, sim.properties.layouts, strict=True)
     points = {
         name: layout.points
@@ -237,7 +244,7 @@ def _with_points(case: Case, sim: Simulation, found: dict[str, dict[str, float]]
 
 
 def _scaled_moduli(case: Case, factor: float) -> dict[str, float]:
-    """Young's modulus [Pa] of each material that deforms, times a factor."""
+    """Return Young's modulus [Pa] of each deformable material, times a factor."""
     return {
         name: factor * material.young
         for name, material in case.materials.items()
@@ -246,14 +253,14 @@ def _scaled_moduli(case: Case, factor: float) -> dict[str, float]:
 
 
 def _scaled_case(case: Case, sim: Simulation, factor: float) -> Case:
-    """The case with the stiffness of all joints and blocks times a factor."""
+    """Scale the stiffness of all joints and blocks of a case by a factor."""
     joints = {name: case.joints[name].model_copy(update=more) for name, more in _scaled(sim, factor).items()}
     moduli = {n: case.materials[n].model_copy(update={"young": e}) for n, e in _scaled_moduli(case, factor).items()}
     return case.model_copy(update={"joints": case.joints | joints, "materials": case.materials | moduli})
 
 
 def _frequency_with(job: CaseJob, sim: Simulation, factor: float) -> float | None:
-    """The frequency of the measured mode [Hz] with stiffness scaled; None where the structure does not stand then."""
+    """Return the frequency of the measured mode [Hz] with scaled stiffness; None where the structure does not stand."""
     wanted = job.case.analysis
     again = _simulation(job.with_case(_scaled_case(job.case, sim, factor)))
     try:

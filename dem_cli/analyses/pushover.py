@@ -1,4 +1,4 @@
-"""kind = "pushover": the load multiplier at which a structure fails, and how it falls."""
+"""Pushover analysis, kind = "pushover": the load multiplier at failure, and the collapse."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ MOTION, IMPOSSIBLE, BUCKLING = "motion", "limit analysis", "buckling"  # what fa
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
-    """Outcome of a pushover; status "not converged" where the budget of steps ends before the proofs."""
+    """Run a pushover; status "not converged" where the budget of steps ends before the proofs."""
     job = CaseJob.of_case(case, model, observer, settings)
     start = StartBound(job)
     search, sim = failure_search(
@@ -72,7 +72,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
 
 
 def _mechanism(sim: Simulation, search: FailureLoad, track: Track) -> dict[str, Any]:
-    """How the structure fails, with the frames before and after, where failure was shown by motion.
+    """Describe the failure mechanism, with frames before and after, where failure was shown by motion.
 
     Before is where that motion began: the highest equilibrium may be one of the creep, which had gone further.
     """
@@ -88,7 +88,7 @@ def _mechanism(sim: Simulation, search: FailureLoad, track: Track) -> dict[str, 
 
 
 def _off_the_load(peak: post_peak.CurvePeak, search: FailureLoad, scale: float, off: float) -> list[str]:
-    """A word where the curve of the collapse does not come to what the structure carries at rest, or passes it."""
+    """Warn where the curve of the collapse misses or exceeds the load carried at rest."""
     low, high = search.low, search.high
     if peak.load is None or not low or high is None:
         return []
@@ -107,14 +107,14 @@ def _off_the_load(peak: post_peak.CurvePeak, search: FailureLoad, scale: float, 
 
 
 def _by_load(job: CaseJob) -> bool:
-    """Whether the load of failure stays while the collapse is followed."""
+    """Tell whether the failure load stays constant while the collapse is followed."""
     wanted = job.case.analysis.collapse
     snaps = law_of(job.request).bonded or any(joint.profile for joint in job.case.joints.values())
     return wanted == "load" or (wanted == "auto" and snaps)
 
 
 def _fall(job: CaseJob, sim: Simulation, search: FailureLoad) -> tuple[Simulation, post_peak.CurvePeak]:
-    """The collapse, in a simulation of its own."""
+    """Follow the collapse in a separate simulation."""
     until, frames = job.case.analysis.follow, job.case.output.snapshots
     load = search.carried / sim.live_scale
     by_load = _by_load(job)
@@ -146,7 +146,7 @@ def _fall(job: CaseJob, sim: Simulation, search: FailureLoad) -> tuple[Simulatio
 
 
 def answer(search: FailureLoad, sim: Simulation, resolution: float) -> dict[str, Any]:
-    """The failure load and how it was obtained."""
+    """Return the failure load and the accuracy of its search as keys of the summary."""
     status = search.status
     if status == NO_FAILURE:
         status = f"no failure up to a load multiplier of {search.limit:g}"

@@ -1,4 +1,4 @@
-"""All analysis kinds. A new one is one file and one line here."""
+"""Registry of the analysis kinds. A new one is one file and one line here."""
 
 from dem_cli.case.tables.analysis import (
     Analysis,

@@ -1,4 +1,4 @@
-"""kind = "safety": by which factor strengths may fall, or how thin a structure may be, before it fails.
+"""Safety analysis, kind = "safety": the factor by which strengths may fall, or a key may change, before failure.
 
 Every value is a run of its own (ensembles/static_run.py); the search only says which value comes next. What it
 reports is the last value proven to stand and the first proven to fail.
@@ -34,12 +34,12 @@ NOT_CONVERGED, INTERRUPTED = "not converged", "interrupted"
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
-    """Outcome of a safety analysis. Raises CaseError where nothing can be varied as the case says."""
+    """Run a safety analysis. Raises CaseError where nothing can be varied as the case says."""
     return SafetyStudy(case, model, observer, settings).run()
 
 
 class SafetyStudy:
-    """All runs of a safety analysis."""
+    """Safety study: all runs of a safety analysis and their bracket."""
 
     def __init__(self, case: Case, model: Model, observer: Observer, settings: Settings):
         self.settings = settings
@@ -58,7 +58,7 @@ class SafetyStudy:
         self.moving = ""  # why geometry moves, where the case does not ask for it: then that is no guess, but a bound
 
     def run(self) -> Outcome:
-        """Limit analysis where it can tell, then the runs, then what is to be seen of them."""
+        """Run limit analysis where it applies, then the trial runs, then hand over the decisive ones."""
         known = self.known = self._bound()
         guess = Ends(known.carried, known.impossible) if isinstance(known, Bound) and not self.moving else None
         start = min(max(1.0, self.scale.low), self.scale.high) if self.analysis.of_strength else None
@@ -83,14 +83,14 @@ class SafetyStudy:
     # -- runs --------------------------------------------------------------------------------------
 
     def variant(self, value: float) -> tuple[Case, Model]:
-        """Case and model at a value."""
+        """Return case and model at a value of the varied parameter."""
         if self.analysis.of_strength:
             return weaker(self.case, value), self.model
         case = changed(self.case, self.analysis.vary, value)
         return case, checked_model(case, value)
 
     def _stands(self, value: float) -> bool:
-        """Whether the structure is proven to stand at a value; each is run once."""
+        """Test whether the structure provably stands at a value; each value is run once."""
         if value not in self.answers and value not in self.undecided:
             self._run(value)
         return self.answers.get(value, False)
@@ -120,12 +120,12 @@ class SafetyStudy:
         self.nearest_runs = {v: kept for v, kept in self.nearest_runs.items() if v in near}
 
     def _give_up(self, value: float, why: str) -> None:
-        """Nothing was proven at a value: it counts as one that does not stand, and as none that fails."""
+        """Record a value without proof: it counts neither as standing nor as failing."""
         self.undecided.add(value)
         self.warnings.append(f"{self._named(value)}: {why}")
 
     def _nearest(self) -> Ends:
-        """The values tried that are next to the change."""
+        """Return the tried values next to the change from standing to failing."""
         tried = sorted(self.answers.items())
         return bisection.first_change(tried) if tried else Ends(None, None)
 
@@ -142,7 +142,7 @@ class SafetyStudy:
         return f"F = {value:.5g}" if self.analysis.of_strength else f"{self.analysis.vary} = {value:.6g}"
 
     def _nowhere(self, ends: Ends) -> str:
-        """The status where all values have the same end."""
+        """Return the status where all tried values stand, or all fail."""
         low, high = self.scale.low, self.scale.high
         if not self.analysis.of_strength:
             return f"{'stands' if ends.fails is None else 'fails'} at both {self._named(low)} and {high:.6g}"
@@ -151,13 +151,15 @@ class SafetyStudy:
         return f"fails even at F = {low:g}"
 
     def _past(self, value: float) -> float:
-        """How far a value is beyond what limit analysis proved impossible; negative: not, or not known."""
+        """Return how far a value lies beyond what limit analysis proved impossible; negative: not beyond, or not
+        known.
+        """
         if not isinstance(self.known, Bound):
             return -math.inf
         return (value - self.known.impossible) * math.copysign(1.0, self.known.impossible - self.known.carried)
 
     def _check(self, ends: Ends) -> bool:
-        """Words about a structure that does not stand as it is, and about answers that contradict each other.
+        """Warn about a structure that fails as it is, and about answers that contradict each other.
 
         False: it stands where limit analysis proves that nothing can, and nothing explains that.
         """
@@ -212,7 +214,7 @@ class SafetyStudy:
         return answer
 
     def _facts(self, ends: Ends) -> dict[str, Any]:
-        """How it was obtained; joints and contacts are those of the structure next to failure."""
+        """Return how the answer was obtained; joints and contacts are those of the structure next to failure."""
         run = next(iter(self.nearest_runs.values()), None)
         return {
             "joints": run.sim.first_joints if run else None,
@@ -230,7 +232,7 @@ class SafetyStudy:
     # -- what is to be seen ------------------------------------------------------------------------
 
     def _show(self, ends: Ends, follow: float) -> None:
-        """Rows and frames of the last structure that stands and of the first that fails, and its collapse."""
+        """Hand over rows and frames of the last standing and the first failing structure, and its collapse."""
         standing, failing = (self.nearest_runs.get(v) if v is not None else None for v in ends)
         base = failing or standing
         if base is None:
@@ -249,7 +251,7 @@ class SafetyStudy:
             self.warnings.append(f"the collapse was not followed to its end: {quiet}")
 
     def _hand_over(self, run: StaticRun, base: StaticRun) -> None:
-        """Rows, and the frame as a displacement of the structure that is drawn."""
+        """Hand over rows, and the frame as a displacement from the structure that is drawn."""
         for row in run.rows:
             self.observer.row(row)
         if self.case.output.snapshots == 0:

@@ -1,4 +1,4 @@
-"""kind = "settlement": supports move as [[settlement]] says, slowly, with geometry that moves."""
+"""Settlement analysis, kind = "settlement": supports move slowly as [[settlement]] says, with moving geometry."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ COLLAPSED = "collapsed under the settlement"
 
 
 def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Outcome:
-    """Outcome of a settlement; status "ok" means that the structure stands afterwards. Raises CaseError without any."""
+    """Run a settlement; status "ok" means that the structure stands afterwards."""
     if not case.settlement:
         raise CaseError([CaseProblem(("analysis", "kind"), "'settlement' needs at least one [[settlement]] table")])
     job = CaseJob.of_case(case, model, observer, settings)
@@ -62,17 +62,17 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
 
 
 def measured_at_end(sim: Simulation) -> dict[str, Any]:
-    """State of the structure at this settlement, for the summary."""
+    """Return the state of the structure at this settlement, for the summary."""
     return {"largest_displacement": measures.largest_displacement(sim), "joint_state": joint_state(sim, END)}
 
 
 def stiffness_ratio(model: Model, overlap: float = DEFAULT.stiffness.settlement_overlap) -> float:
-    """kn·h/W of "auto" joints that keeps overlaps small: the whole weight may stand on one joint."""
+    """Return kn·h/W of "auto" joints that keeps overlaps small: the whole weight may rest on one joint."""
     return float((~model.fixed).sum()) / overlap
 
 
 class SupportMovement:
-    """How the supports of all [[settlement]] tables move: those of one table as one rigid body.
+    """Movement of the supports of all [[settlement]] tables, each table as one rigid body.
 
     curved: some turn about a point that is not their own centroid, which then moves on a circle
     """
@@ -84,7 +84,9 @@ class SupportMovement:
         self.curved = any(turning)
 
     def at(self, share: float) -> np.ndarray:
-        """Movement of every block on a share of the way, zero but for the settling supports [m, rad], (n, n_dof)."""
+        """Return the movement of every block at a share of the way, zero but for settling supports [m, rad], (n,
+        n_dof).
+        """
         motion = np.zeros_like(self.model.dead_loads)
         for table, chosen in zip(self.tables, self.chosen, strict=True):
             motion[chosen] += share * np.array([*table.displacement, *table.rotation])
@@ -98,7 +100,7 @@ class SupportMovement:
 
 @stage
 def _move(way: SettlementWay, track: Track, frames: int, budget: Budget) -> str:
-    """Moves the supports, then waits for equilibrium; returns the status."""
+    """Move the supports, then wait for equilibrium; returns the status."""
     sim, rows = way.sim, way.rows
     every = max(rows // max(frames - 2, 1), 1)
     if not sim.stages.resumed():
@@ -119,7 +121,7 @@ def _move(way: SettlementWay, track: Track, frames: int, budget: Budget) -> str:
 
 
 def _collapse(case: Case, way: SettlementWay, job: CaseJob) -> dict[str, Any]:
-    """How far the supports had moved when the structure ceased to stand, and how it falls; the end stays as it is."""
+    """Bracket the support movement at failure and follow the collapse; the final state is left unchanged."""
     sim = way.sim
     end = sim.save()
     job.clock.progress("how far it stands", 1.0, measures.largest_displacement(sim), None)
@@ -145,5 +147,5 @@ def _collapse(case: Case, way: SettlementWay, job: CaseJob) -> dict[str, Any]:
 
 
 def _plain(turn: list[float]) -> float | list[float]:
-    """A turn as a summary has it: in the plane one angle, in space axis times angle [rad]."""
+    """Convert a rotation for the summary: in the plane one angle, in space axis times angle [rad]."""
     return turn if len(turn) > 1 else turn[0]

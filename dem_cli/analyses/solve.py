@@ -1,4 +1,4 @@
-"""Solve a case: the analysis that it names, from a model to an outcome."""
+"""Run the analysis that a case names, from a model to an outcome."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def solve(
     case: Case, model: Model, observer: Observer, batch: Batch | None = None, settings: Settings = DEFAULT
 ) -> Outcome:
-    """Solve a case with the analysis that it names. Raises SolverError where the solver gives up.
+    """Run the analysis that a case names. Raises SolverError where the solver gives up.
 
     batch: how to do the runs of an analysis that consists of many; settings: those that differ from the default are
     named in the summary.

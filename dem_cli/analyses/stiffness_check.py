@@ -1,4 +1,4 @@
-"""Check of joint stiffness in a time history: the same run on softer joints, and how far its peaks move.
+"""Sensitivity of a time history to joint stiffness: the same run on softer joints, and the change of its peaks.
 
 Only joints of "auto" stiffness are the program's choice, and only these are checked. What elastic joints change shrinks
 with their compliance: peaks that hold on joints ten times as soft hold on stiffer ones all the more.
@@ -43,7 +43,7 @@ def checked(
     collapsed: bool | None,
     settings: Settings,
 ) -> dict[str, Any]:
-    """Keys of the summary about a run on "auto" joints; what is to be doubted goes to the warnings of its job.
+    """Check a run on "auto" joints against softer ones as keys of the summary; doubts become warnings of the job.
 
     settings: those without the choice.
     """
@@ -75,7 +75,7 @@ def checked(
 
 
 def _measured(factor: str, run: ShakenRunResult | None, moved: float | None) -> str:
-    """What there is to say where the second run raises no doubt of its own."""
+    """Describe the change of the peaks on softer joints where the second run raises no doubt."""
     if moved is not None:
         return f"{factor} peaks move by {moved:.1%} at most"
     if run is not None and run.collapsed:
@@ -86,7 +86,7 @@ def _measured(factor: str, run: ShakenRunResult | None, moved: float | None) -> 
 def trifles(
     monitors: Sequence[MonitorRequest], peaks: np.ndarray, smallest: float, gravity: float, settings: Settings
 ) -> np.ndarray:
-    """Peaks that do not matter, (n,): a small share of the largest one of the same quantity, or what is no motion.
+    """Select negligible peaks, (n,): a small share of the largest one of the same quantity, or no real motion.
 
     That is what counts as none of a block with an edge `smallest` [m]: so much of its size, of a turn of 1 rad, and of
     what it gains in speed as it falls by its size under `gravity` [m/s²].
@@ -102,13 +102,15 @@ def trifles(
 
 
 def change(one: np.ndarray, other: np.ndarray, least: np.ndarray) -> np.ndarray:
-    """How far peaks differ, over the larger of both; 0 where neither is above what matters at least."""
+    """Compute the relative difference of peaks over the larger one; 0 where neither exceeds the least relevant
+    value.
+    """
     larger = np.maximum(one, other)
     return np.where(larger > least, np.abs(other - one) / np.where(larger > 0.0, larger, 1.0), 0.0)
 
 
 def _run(job: CaseJob, motions: Sequence[Motion], settings: Settings) -> ShakenRunResult | None:
-    """The same structure under the same motion; None where it does not stand."""
+    """Run the same structure under the same motion with other settings; None where it does not stand."""
     same = Variant(job.case, job.model, 0, settings.statistics.largest_draw)
     rested = RestedStructure(same, motions, ProgressOnly(job.clock, job.clock.stages), settings)
 
@@ -119,7 +121,7 @@ def _run(job: CaseJob, motions: Sequence[Motion], settings: Settings) -> ShakenR
 
 
 def _doubts(job: CaseJob, factor: str, moved: np.ndarray, allowed: float) -> str:
-    """Peaks that moved by more than allowed, the worst first, in one sentence; empty where none did."""
+    """Describe the peaks that changed by more than allowed, the worst first; empty where none did."""
     worst = [i for i in np.argsort(-moved, kind="stable") if moved[i] > allowed]
     if not worst:
         return ""
@@ -130,6 +132,6 @@ def _doubts(job: CaseJob, factor: str, moved: np.ndarray, allowed: float) -> str
 
 
 def _named(monitor: Monitor) -> str:
-    """What a monitor follows, in words: "displacement x of 'top'"."""
+    """Name the quantity of a monitor in words: "displacement x of 'top'"."""
     quantity = f"{monitor.quantity} {monitor.component}" if monitor.component else monitor.quantity
     return f"{quantity} of '{monitor.place}'"

@@ -1,4 +1,4 @@
-"""kind = "time-history": the motion of a structure while its supports move, and how far its peaks can be trusted.
+"""Time-history analysis, kind = "time-history": motion under ground motion, and how reliable its peaks are.
 
 analysis.repeats: the same motion on slightly different structures, and how much peaks differ.
 
@@ -50,7 +50,7 @@ PERCENTILES = {"min": 0.0, "p16": 16.0, "median": 50.0, "p84": 84.0, "max": 100.
 def run(
     case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT, batch: Batch | None = None
 ) -> Outcome:
-    """Outcome of a time history, and how sensitive it is. Raises SolverError where it blows up."""
+    """Run a time history with its sensitivity checks. Raises SolverError where the integration diverges."""
     job = CaseJob.of_case(case, model, observer, settings)
     motions = motions_of(case)
     ground = GroundMotion(motions, model)
@@ -78,12 +78,12 @@ def run(
 
 
 def doubtful(case: Case) -> bool:
-    """Whether the peaks of a case lack their sensitivity."""
+    """Test whether the peaks of an earthquake case lack repeated runs for their sensitivity."""
     return case.analysis.repeats == 0 and any(table.kind in EARTHQUAKES for table in case.motion)
 
 
 def repeated(case: Case, model: Model, observer: Observer, settings: Settings, batch: Batch) -> dict[str, Any]:
-    """Keys of the summary: spread of the peaks of those that stood, share of those that collapsed.
+    """Return the spread of the peaks over the repeats that stood and the share that collapsed, as keys of the summary.
 
     settings: those of the run beside it, with the same stiffness of "auto" joints.
     """
@@ -117,9 +117,9 @@ def repeated(case: Case, model: Model, observer: Observer, settings: Settings, b
 
 
 def spread(runs: Sequence[ShakenRunResult], n_monitors: int) -> dict[str, Any]:
-    """How many collapsed, and the percentiles of the peaks of those that stood: a list, None for each where none did.
+    """Count collapses, and compute percentiles of the peaks of the runs that stood: a list, None where none did.
 
-    still_moving: those of which nobody knows it, when the time after the motion is over; neither standing nor fallen.
+    still_moving: runs whose blocks still move when the time after the motion is over; neither standing nor fallen.
     """
     stood = [run.peaks for run in runs if run.collapsed is False]
     peaks = np.array(stood).reshape(len(stood), n_monitors)
@@ -134,7 +134,7 @@ def spread(runs: Sequence[ShakenRunResult], n_monitors: int) -> dict[str, Any]:
 
 
 def alone(case: Case, peaks: np.ndarray, repeats: dict[str, Any], allowed: float) -> list[str]:
-    """Words for peaks that repeats scatter widely, or do not reach or pass; the first of each kind is named."""
+    """Warn about peaks that scatter widely over the repeats, or lie outside them; the first of each kind is named."""
     wide, outside = [], []
     runs = repeats.get("runs", ENOUGH) - repeats.get("collapsed", 0) - repeats.get("still_moving", 0)
     for monitor, peak, found in zip(case.monitor, peaks.tolist(), repeats["peaks"]):
@@ -150,7 +150,7 @@ def alone(case: Case, peaks: np.ndarray, repeats: dict[str, Any], allowed: float
 
 
 def otherwise(collapsed: bool | None, repeats: dict[str, Any]) -> list[str]:
-    """Words for repeats that end otherwise than the run beside them; none where it does not know how it ends."""
+    """Warn about repeats that end differently from the main run; none where its own end is not known."""
     fell, runs = repeats["collapsed"], repeats["runs"]
     stood = runs - fell - repeats["still_moving"]
     if collapsed is False and fell:

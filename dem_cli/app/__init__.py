@@ -1,1 +1,1 @@
-"""The application: commands, public functions of Python, sweeps, verification, calibration."""
+"""Application layer: commands, public functions of Python, sweeps, verification, calibration."""

@@ -1,4 +1,4 @@
-"""Where the parts meet: the registries are handed to the case, the case to the model."""
+"""Load cases and build models: the registries of structures, laws and analyses are joined here."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @cache
 def make_case_model() -> type[Case]:
-    """The class of case files with every registered structure, law and analysis, and all other tables."""
+    """Create the class of case files with every registered structure, law and analysis, and all other tables."""
     from dem_cli.analyses.registry import ANALYSES
     from dem_cli.core.laws.registry import LAWS
     from dem_cli.masonry.structures.registry import GENERATORS
@@ -28,7 +28,7 @@ def make_case_model() -> type[Case]:
 
 
 def case_model_of(tables: dict[str, Any] | None) -> type[Case]:
-    """The class of case files for these tables: of the kinds and keys that they name alone, made much sooner.
+    """Create the class of case files for these tables with the kinds and keys that they name, which is much faster.
 
     The whole one for None, for kinds that do not exist, and where it is there or many others were made.
     """
@@ -41,7 +41,7 @@ def case_model_of(tables: dict[str, Any] | None) -> type[Case]:
 
 
 def _named(tables: dict[str, Any]) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...], frozenset[str]] | None:
-    """Kinds of structures, laws and analysis, and keys, that a case names; None where it names one that is none."""
+    """Return the kinds of structures, laws and analysis, and keys, that a case names; None for an unknown name."""
     from dem_cli.analyses.registry import ANALYSES
     from dem_cli.core.laws.registry import LAWS
     from dem_cli.masonry.structures.registry import GENERATORS
@@ -62,7 +62,7 @@ def _named(tables: dict[str, Any]) -> tuple[tuple[str, ...], tuple[str, ...], tu
 def _case_model(
     structures: tuple[str, ...], laws: tuple[str, ...], analyses: tuple[str, ...], keys: frozenset[str]
 ) -> type[Case]:
-    """The class of case files with these kinds and keys."""
+    """Create the class of case files with these kinds and keys."""
     from dem_cli.analyses.registry import ANALYSES
     from dem_cli.case.tables.declared import table_of
     from dem_cli.core.laws.registry import LAWS
@@ -110,7 +110,7 @@ TABLES: dict[str, Callable[[], Any]] = {"calibration": _calibration, "damping": 
 
 
 def load_case(path: str | Path, overrides: Sequence[str | Override] = (), text: str | None = None) -> LoadedCase:
-    """Read and validate a case file (or the `text` that it held), with KEY=VALUE overrides.
+    """Read and validate a case file (or its given `text`), with KEY=VALUE overrides.
 
     Raises CaseError or UsageError.
     """
@@ -118,7 +118,7 @@ def load_case(path: str | Path, overrides: Sequence[str | Override] = (), text: 
 
 
 def build_model(loaded: LoadedCase) -> Model:
-    """Generate the blocks, check them, put them into arrays; what is odd about them joins `loaded.warnings`.
+    """Generate the blocks, check them and assemble the model; warnings about them join `loaded.warnings`.
 
     Raises CaseError, with file and line, on bad geometry and unknown blocks.
     """
@@ -126,14 +126,14 @@ def build_model(loaded: LoadedCase) -> Model:
 
 
 def build_assembly(loaded: LoadedCase) -> Assembly:
-    """`build_model`, with the blocks and with the loads: where they act."""
+    """Assemble the model with its blocks and the points of its loads."""
     made = laid(loaded)
     examine(loaded, made)
     return made
 
 
 def laid(loaded: LoadedCase) -> Assembly:
-    """The blocks of a case with their loads, not yet examined. Raises CaseError."""
+    """Generate the blocks of a case with their loads, not yet examined. Raises CaseError."""
     from dem_cli.masonry.assembly.assemble import assembly
 
     with loaded.located():
@@ -141,7 +141,7 @@ def laid(loaded: LoadedCase) -> Assembly:
 
 
 def examine(loaded: LoadedCase, made: Assembly) -> None:
-    """Whether blocks and motions of a case make sense; what is odd about them joins `loaded.warnings`.
+    """Check the blocks and ground motions of a case; warnings join `loaded.warnings`.
 
     Raises CaseError, with file and line.
     """

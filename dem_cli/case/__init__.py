@@ -1,1 +1,1 @@
-"""Case files: tables, units, names, and errors with their line."""
+"""Read, validate and write case files: tables, units, names, and errors with their line."""

@@ -1,4 +1,4 @@
-"""The base of every table of a case file: strict about names, frozen after validation.
+"""Base classes of the tables of a case file, strict about key names and frozen after validation.
 
 Sequences are tuples (`tuple[float, float]`, `tuple[float, ...]`); lists from TOML become tuples.
 """
@@ -29,7 +29,7 @@ NOTHING = "none"  # joints.NAME.head: head joints are not filled
 
 
 class CaseModel(BaseModel):
-    """A table of the case file. Unknown keys are errors; values are not coerced between types."""
+    """Base class of a table of the case file: unknown keys are errors, and values are not coerced between types."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False, defer_build=True)
 
@@ -57,7 +57,7 @@ class Crack(CaseModel):
 
 
 class StructureBase(CaseModel):
-    """What every generator accepts. A subclass adds `kind: Literal["..."] = "..."` and its own keys.
+    """Keys that every structure generator accepts; a subclass adds `kind: Literal["..."] = "..."` and its own keys.
 
     After reading, `material` and `id` are filled in; `id` is the prefix of the names of the blocks. `only_in`: the
     only dimension of cases in which there is this kind; None: both.
@@ -100,7 +100,7 @@ class StructureBase(CaseModel):
     @model_validator(mode="before")
     @classmethod
     def _thickness_within_size(cls, table: Any, info: ValidationInfo) -> Any:
-        """In 3D a size may be given with the thickness: block = [length, height, thickness]."""
+        """Split a three-number block size of a 3D case, [length, height, thickness], into size and thickness."""
         for key in ("block", "size"):
             size = table.get(key) if isinstance(table, dict) else None
             if isinstance(size, (list, tuple)) and len(size) == 3 and (info.context or {}).get("dimension") == 3:
@@ -111,44 +111,44 @@ class StructureBase(CaseModel):
 
     @property
     def rotation(self) -> float:
-        """Turn about the origin [rad], counter-clockwise."""
+        """Angle of rotation of the structure about the origin [rad], counter-clockwise."""
         return math.radians(self.rotation_deg)
 
     @property
     def cracks(self) -> Crack | None:
-        """Where its blocks can crack; None: nowhere."""
+        """Return where the blocks of the structure can crack; None: nowhere."""
         return Crack(joint=self.crack) if isinstance(self.crack, str) else self.crack
 
     @property
     def on_ground(self) -> bool:
-        """Whether a [ground] takes the place of its base."""
+        """Tell whether a [ground] block replaces the base of the structure."""
         return True
 
     def drawn_from(self, seed: int) -> StructureBase:
-        """Itself with what it lacks to draw at random, from the seed of the case."""
+        """Return the structure with its missing random seed taken from the seed of the case."""
         return self
 
 
 class RandomStructure(StructureBase):
-    """What a generator accepts that draws at random."""
+    """Keys of a structure generator that draws random sizes or positions."""
 
     seed: int | None = Field(
         default=None, ge=0, description="makes what is random reproducible; default: that of the case", examples=[3]
     )
 
     def drawn_from(self, seed: int) -> RandomStructure:
-        """With the seed of the case where it has none of its own."""
+        """Return the structure with the seed of the case where it has none of its own."""
         return self if self.seed is not None else self.model_copy(update={"seed": seed})
 
 
 def check_count(count: float, *keys: str | int) -> None:
-    """Raises KeyProblem at a key where a structure would have more blocks than any may have."""
+    """Raise KeyProblem at a key with which a structure would exceed the largest number of blocks."""
     if count > MOST_BLOCKS:
         raise KeyProblem(f"{count:.3g} blocks are too many; must be at most {MOST_BLOCKS:,}", *keys)
 
 
 def as_tuples(value: Any) -> Any:
-    """`value` with every list in it, at any depth, as a tuple."""
+    """Convert every list in a value, at any depth, to a tuple."""
     if isinstance(value, (list, tuple)):
         return tuple(as_tuples(item) for item in value)
     if isinstance(value, dict):
@@ -157,17 +157,17 @@ def as_tuples(value: Any) -> Any:
 
 
 def one_or_more(table: Any) -> Any:
-    """A tuple of tables that may be written as one table too; `names.complete` puts that one into a list."""
+    """Return the type of a tuple of tables for which one table may stand; `names.complete` makes that one a list."""
     return Annotated[sequence_of(table), OneOrMoreSchema()]
 
 
 def sequence_of(table: Any) -> Any:
-    """The type of a tuple of any number of these, made while the program runs."""
+    """Return the type of a tuple of any number of tables of a class known only at run time."""
     return GenericAlias(tuple, (table, ...))
 
 
 class OneOrMoreSchema:
-    """JSON Schema of a list of tables for which one table will do."""
+    """JSON Schema of a list of tables for which a single table may stand."""
 
     def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
         several = handler(core_schema)

@@ -1,4 +1,4 @@
-"""[[block]]: blocks drawn by hand, by their corners; in 3D by corners, faces, convex parts, or as a prism."""
+"""Table [[block]]: blocks drawn by hand, by their corners; in 3D by corners, faces, convex parts, or as a prism."""
 
 from __future__ import annotations
 

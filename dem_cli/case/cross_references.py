@@ -24,7 +24,7 @@ WITH_LIVE_LOADS = ("load", "pressure")
 
 
 def complete(data: dict[str, Any], title: str) -> None:
-    """Fill in, in place, the title, the only material and the ids of structures; a table alone becomes a list."""
+    """Fill in, in place, the title, the only material and the ids of structures; a single table becomes a list."""
     if data.get("title", "") == "":
         data["title"] = title
     for key in ONE_OR_MORE:
@@ -49,7 +49,7 @@ def complete(data: dict[str, Any], title: str) -> None:
 
 
 def problems(data: dict[str, Any]) -> list[CaseProblem]:
-    """Unknown or doubled names, and a case without blocks."""
+    """List unknown and doubled names in a case, and report a case without blocks."""
     found = [*unknown_materials(data), *unknown_in_interfaces(data), *unknown_structures(data)]
     found += [*unknown_bars(data), *odd_cracks(data), *odd_heads(data)]
     for key in ("structure", "block"):
@@ -76,7 +76,7 @@ def problems(data: dict[str, Any]) -> list[CaseProblem]:
 
 
 def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProblem]:
-    """A monitor that is controlled (analysis.of) and does not exist, or whose value is no displacement with a sign."""
+    """Report a monitor named by analysis.of that does not exist or does not measure a signed displacement."""
     if not isinstance(name, str):
         return
     monitors = [(path, table) for path, table in entries(data, "monitor") if isinstance(table.get("name"), str)]
@@ -94,7 +94,7 @@ def controlled_monitor(data: dict[str, Any], name: object) -> Iterator[CaseProbl
 
 
 def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
-    """Monitors of reactions where blocks have real masses, as samples of a motion hold none; in modes of cuts too."""
+    """Report reaction monitors in analyses with real masses, and cut monitors in a modal analysis."""
     if not kind_of(kind).real_masses:
         return []
     refused = REACTIONS if kind_of(kind).shakes else (*REACTIONS, *OF_CUTS)
@@ -108,7 +108,7 @@ def reactions_in_time(data: dict[str, Any], kind: object) -> list[CaseProblem]:
 
 
 def weightless_joints(data: dict[str, Any], kind: object) -> Iterator[CaseProblem]:
-    """Joints of a time history whose stiffness goes by the weights of blocks, where these have none."""
+    """Report joints of a time history whose stiffness is scaled by block weights that are zero."""
     gravity, joints = data.get("gravity"), data.get("joints")
     if not kind_of(kind).shakes or isinstance(gravity, bool) or gravity != 0 or not isinstance(joints, dict):
         return
@@ -121,7 +121,7 @@ def weightless_joints(data: dict[str, Any], kind: object) -> Iterator[CaseProble
 
 
 def following_loads(data: dict[str, Any], analysis: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Loads that follow blocks where that is not known: with real masses, and as what displacement controls."""
+    """Report follower loads where they are not supported: with real masses, and as the load of displacement control."""
     for path, table in entries(data, "load"):
         kind, follows = analysis.get("kind"), table.get("follows")
         if follows is not None and kind_of(kind).real_masses:
@@ -137,9 +137,7 @@ def following_loads(data: dict[str, Any], analysis: dict[str, Any]) -> Iterator[
 
 
 def strained_blocks(data: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Materials whose blocks deform by themselves where that is not known: beside ties and bars; blocks that bend in
-    space, or on joints that cannot tell.
-    """
+    """Report deformable blocks where not supported: beside ties and bars, bending in 3D, joints with too few points."""
     materials = data.get("materials")
     if not isinstance(materials, dict):
         return
@@ -159,7 +157,7 @@ def strained_blocks(data: dict[str, Any]) -> Iterator[CaseProblem]:
 
 
 def _unbent_joints(data: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Joints whose points cannot tell how a block bends."""
+    """Yield the names of joints whose contact points are too few for blocks that bend."""
     joints = data.get("joints")
     for name, joint in joints.items() if isinstance(joints, dict) else ():
         if isinstance(joint, dict) and joint.get("points") in (2, "vertices"):
@@ -170,7 +168,7 @@ def _unbent_joints(data: dict[str, Any]) -> Iterator[CaseProblem]:
 
 
 def unknown_materials(data: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Every `material` in a structure, a block or the ground, and where there are several, its absence."""
+    """Report unknown materials in structures, blocks and the ground, and missing ones where there are several."""
     materials = names(data, "materials")
     ground: list[tuple[KeyPath, dict[str, Any]]] = []
     if isinstance(data.get("ground"), dict):
@@ -185,7 +183,7 @@ def unknown_materials(data: dict[str, Any]) -> Iterator[CaseProblem]:
 
 
 def mentions(value: Any, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
-    """Where a material is named, at any depth."""
+    """Find every key `material` at any depth of a case, with its key path and value."""
     if isinstance(value, dict):
         for key, item in value.items():
             if key == "material" and isinstance(item, str) and item:
@@ -198,7 +196,7 @@ def mentions(value: Any, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
 
 
 def unknown_in_interfaces(data: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Materials and joints of [[interface]] tables that do not exist."""
+    """Report materials and joints of [[interface]] tables that do not exist."""
     materials, joints = names(data, "materials"), names(data, "joints")
     for path, table in entries(data, "interface"):
         between = table.get("between")
@@ -211,7 +209,7 @@ def unknown_in_interfaces(data: dict[str, Any]) -> Iterator[CaseProblem]:
 
 
 def unknown_bars(data: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Bars of [[reinforcement]] tables that do not exist."""
+    """Report bars of [[reinforcement]] tables that do not exist."""
     known = names(data, "bars")
     for path, table in entries(data, "reinforcement"):
         name = table.get("bar")
@@ -220,7 +218,7 @@ def unknown_bars(data: dict[str, Any]) -> Iterator[CaseProblem]:
 
 
 def odd_cracks(data: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Joints within stones that do not exist, and stones in pieces that [[imperfection]] would take for stones."""
+    """Report unknown joints inside cracked stones, and cracks beside [[imperfection]], not known together."""
     joints = names(data, "joints")
     for path, table in entries(data, "structure"):
         crack, place = table.get("crack"), (*path, "crack")
@@ -236,7 +234,7 @@ def odd_cracks(data: dict[str, Any]) -> Iterator[CaseProblem]:
 
 
 def odd_heads(data: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Joints of heads that do not exist, that are the joint itself, or that have a joint for heads in turn."""
+    """Report head joints that do not exist, name themselves, or have head joints in turn."""
     tables = data.get("joints")
     heads = {
         name: table["head"]
@@ -261,7 +259,7 @@ def odd_heads(data: dict[str, Any]) -> Iterator[CaseProblem]:
 
 
 def unknown_structures(data: dict[str, Any]) -> Iterator[CaseProblem]:
-    """Structures that do not exist, of tables that select blocks."""
+    """Report tables that select blocks of a structure that does not exist."""
     ids = [table["id"] for _, table in entries(data, "structure") if isinstance(table.get("id"), str)]
     for path, table in [found for key in SELECTING for found in entries(data, key)] + _group_members(data):
         name = table.get("structure")
@@ -270,7 +268,7 @@ def unknown_structures(data: dict[str, Any]) -> Iterator[CaseProblem]:
 
 
 def _group_members(data: dict[str, Any]) -> list[tuple[KeyPath, dict[str, Any]]]:
-    """Tables in groups."""
+    """List the tables inside [groups] with their key paths."""
     groups = data.get("groups")
     members = (
         [(name, many) for name, many in groups.items() if isinstance(many, list)] if isinstance(groups, dict) else ()
@@ -279,13 +277,13 @@ def _group_members(data: dict[str, Any]) -> list[tuple[KeyPath, dict[str, Any]]]
 
 
 def entries(data: dict[str, Any], key: str) -> list[tuple[KeyPath, dict[str, Any]]]:
-    """The tables of an array of tables with their key paths; what is no table is left to the validator."""
+    """List the tables of an array of tables with their key paths; other items are left to the validator."""
     tables = data.get(key)
     pairs = enumerate(tables) if isinstance(tables, list) else ()
     return [((key, i), table) for i, table in pairs if isinstance(table, dict)]
 
 
 def names(data: dict[str, Any], key: str) -> list[str]:
-    """Keys of a table of tables; none where it is no table."""
+    """List the keys of a table of tables; empty where it is no table."""
     table = data.get(key)
     return list(table) if isinstance(table, dict) else []

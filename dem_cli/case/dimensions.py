@@ -18,7 +18,7 @@ Table = TypeVar("Table", bound=CaseModel)
 
 
 class Scope(NamedTuple):
-    """A key that is known in one dimension only."""
+    """Key of a case file that is allowed in one dimension only."""
 
     key: str  # path as `dem explain` has it, numbers of tables left out
     dimension: int
@@ -28,17 +28,17 @@ class Scope(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The key without its table."""
+        """Name of the key without its table."""
         return self.key.rpartition(".")[2]
 
     def holds(self, value: Any, table: Any) -> bool:
-        """Whether it is about this value in its table."""
+        """Test whether the restriction to one dimension applies to this value in its table."""
         if self.beside is not None and (not isinstance(table, dict) or table.get(self.beside[0]) != self.beside[1]):
             return False
         return not self.values or any(type(value) is type(one) and value == one for one in self.values)
 
     def message(self, value: Any) -> str:
-        """What is wrong with it in the other dimension."""
+        """Return the error message for a value that is not allowed in the other dimension."""
         if not self.values:
             return self.why
         return f"{show(value)} is not allowed; {self.why}"
@@ -76,12 +76,12 @@ SCOPES = (
 
 
 def dimension_of(data: dict[str, Any]) -> int:
-    """Dimension of a case that is not validated yet."""
+    """Return the dimension, 2 or 3, of a case that is not validated yet."""
     return 3 if data.get("dimension") == 3 and data["dimension"] is not True else 2
 
 
 def problems(data: dict[str, Any]) -> Iterator[CaseProblem]:
-    """What a case, as read, says that its dimension does not know."""
+    """Report keys and values of a case that its dimension does not allow."""
     for scope, path, table in _foreign(data):
         value = table[scope.name]
         if value not in ([], {}, None) and scope.holds(value, table):  # no tables say no more than leaving them out
@@ -89,14 +89,14 @@ def problems(data: dict[str, Any]) -> Iterator[CaseProblem]:
 
 
 def leave_out(data: dict[str, Any]) -> None:
-    """Takes defaults out of a whole case, in place, that its dimension does not know."""
+    """Remove from a complete case, in place, the defaults that its dimension does not allow."""
     for scope, _, table in list(_foreign(data)):
         if not scope.values:
             del table[scope.name]
 
 
 def _foreign(data: dict[str, Any]) -> Iterator[tuple[Scope, KeyPath, dict[str, Any]]]:
-    """Keys in plain data that the other dimension alone knows, whatever their value: path, and the table around."""
+    """Find the keys in plain data that only the other dimension allows, with path and table."""
     here: dict[str, list[tuple[str, Scope]]] = {}
     for scope in SCOPES:
         if scope.dimension != dimension_of(data):
@@ -109,7 +109,7 @@ def _foreign(data: dict[str, Any]) -> Iterator[tuple[Scope, KeyPath, dict[str, A
 
 
 def _tables(value: Any, steps: Sequence[str], path: KeyPath) -> Iterator[tuple[KeyPath, dict[str, Any]]]:
-    """Every table at a key path of plain data."""
+    """Find every table at a key path of plain data."""
     if isinstance(value, (list, tuple)):
         for i, item in enumerate(value):
             yield from _tables(item, steps, (*path, i))
@@ -122,7 +122,7 @@ def _tables(value: Any, steps: Sequence[str], path: KeyPath) -> Iterator[tuple[K
 
 
 def known_in(path: Sequence[str], value: Any = None) -> int | None:
-    """The only dimension that a key path is known in (with a value: that value of it); None: both."""
+    """Return the only dimension in which a key path, or one value of it, is allowed; None: both."""
     key = ".".join(path)
     for scope in SCOPES:
         whole = not scope.values and scope.beside is None
@@ -132,7 +132,7 @@ def known_in(path: Sequence[str], value: Any = None) -> int | None:
 
 
 def in_space(table: Table) -> Table:
-    """A table of a case in space: vectors that were left out have as many components as those that are given."""
+    """Complete the default vectors of a 3D case to as many components as the given ones have."""
     changes = {}
     for name, field in type(table).model_fields.items():
         value = getattr(table, name)

@@ -60,7 +60,7 @@ EVERYDAY_WORDS = {  # what people look for -> the table or key that they write
 
 
 class CaseEntry(NamedTuple):
-    """A key as it is in tables of some kinds, or, without a key, the table itself."""
+    """Key of a table of the case file, for one or several kinds; without a key, the table itself."""
 
     table: CaseTable
     key: CaseKey | None
@@ -68,12 +68,12 @@ class CaseEntry(NamedTuple):
 
     @property
     def path(self) -> str:
-        """Its key path."""
+        """Key path of the entry."""
         return self.key.path if self.key else ".".join(self.table.path)
 
     @property
     def page(self) -> str:
-        """The page of the documentation that says most about it."""
+        """Documentation page that describes the entry best."""
         steps, page = list(self.table.path), ""
         while steps and not page:
             page = DOC_PAGES.get(".".join((steps[0], *self.kinds)), "") if len(self.kinds) == 1 else ""
@@ -85,7 +85,7 @@ class CaseEntry(NamedTuple):
 
 
 def find(model: type[BaseModel], query: str) -> list[CaseEntry]:
-    """Every key or table that `query` may mean, alike ones together. Raises UsageError where there is none."""
+    """Find every key or table that `query` may mean, alike ones together. Raises UsageError where there is none."""
     words = [word for word in re.sub(r"[\[\]\"' ]", "", query).split(".") if word and not word.isdigit()]
     names: dict[tuple[str, ...], set[str]] = {}
     for table in tables(model):
@@ -101,14 +101,14 @@ def find(model: type[BaseModel], query: str) -> list[CaseEntry]:
 
 
 def _everyday(query: str) -> str | None:
-    """The key path for a word that people use for it; None: not known."""
+    """Look up the key path for an everyday word; None: not known."""
     plain = re.sub(r"[^a-z]", "", query.lower())
     return next((path for words, path in EVERYDAY_WORDS.items() if plain in words.split()), None)
 
 
 @cache
 def entries(model: type[BaseModel]) -> tuple[CaseEntry, ...]:
-    """All tables and all keys, of each kind for itself; keys whose value can only be a table as that table."""
+    """List all tables and all keys of the case file, one entry per kind."""
     found: list[CaseEntry] = []
     for table in tables(model):
         if table.path:
@@ -118,7 +118,7 @@ def entries(model: type[BaseModel]) -> tuple[CaseEntry, ...]:
 
 
 def _rank(words: Sequence[str], entry: CaseEntry, names: Collection[str]) -> tuple[int, int] | None:
-    """How badly words name an entry: whether its path is cut in front, words that are a user's own names; or None."""
+    """Rank how well the words of a query match an entry, lower being better; None: no match."""
     steps: list[Any] = list(entry.table.path)
     if entry.kinds:
         steps.insert(2 if steps[1:2] == [NAME_PLACEHOLDER] else 1, set(entry.kinds))
@@ -137,7 +137,7 @@ def _rank(words: Sequence[str], entry: CaseEntry, names: Collection[str]) -> tup
 
 
 def _own_names(words: Sequence[str], steps: Sequence[Any], names: Collection[str]) -> int | None:
-    """How many of the words are a user's own names where words name the steps one by one; None where they do not.
+    """Count how many words of a query are names chosen by the user; None where they do not match the steps.
 
     names: keys of such tables, which a last word is not likely to miss by a letter.
     """
@@ -158,7 +158,7 @@ def _own_names(words: Sequence[str], steps: Sequence[Any], names: Collection[str
 
 
 def _together(found: Iterator[CaseEntry]) -> list[CaseEntry]:
-    """Entries that say the same of several kinds as one."""
+    """Merge entries of several kinds that have the same description."""
     kept: dict[tuple[Any, ...], CaseEntry] = {}
     for entry in found:
         key = entry.key
@@ -171,7 +171,7 @@ def _together(found: Iterator[CaseEntry]) -> list[CaseEntry]:
 
 
 def unknown(model: type[BaseModel], query: str, words: Sequence[str]) -> str:
-    """What to say about a key that does not exist: its name now, or the nearest ones, best first."""
+    """Return the message for a key that does not exist: its present name, or the nearest keys, best first."""
     old = retired_keys.retired(words)
     if old is not None:
         return f"{query}: {retired_keys.message(old)}"

@@ -1,4 +1,4 @@
-"""[[imperfection]]: geometric imperfections, how far blocks are from what was drawn."""
+"""Table [[imperfection]]: geometric imperfections of blocks, their deviations from the drawn shape and place."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Imperfection(Selection):
 
 
 def drawn(error: Error, seed: int, table: int, key: str, name: str) -> float:
-    """The value of a key for the block or structure `name`; where it is drawn, from nothing but the other four."""
+    """Draw the error of a block or structure from its seed, table, key and name alone, or return the given number."""
     if isinstance(error, float):
         return error
     share = chance(seed, table, key, name)
@@ -95,6 +95,6 @@ def drawn(error: Error, seed: int, table: int, key: str, name: str) -> float:
 
 
 def _check_range(error: Any, *keys: str | int) -> None:
-    """Raises KeyProblem where a range ends below its beginning."""
+    """Raise KeyProblem where the upper end of a range lies below the lower one."""
     if isinstance(error, tuple) and error[0] > error[1]:
         raise KeyProblem(f"{show(error)} is not allowed; a range is [least, most]", *keys)

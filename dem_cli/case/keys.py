@@ -1,8 +1,8 @@
-"""Every key of a case file as its tables declare it: meaning, unit, what is allowed, default, an example.
+"""Keys of a case file as its tables declare them: meaning, unit, allowed values, default, example.
 
 `dem explain`, docs/case.md and the key tables of docs/laws are made from nothing else. Conventions of a declaration:
 units stand in brackets in the description (`[m]`; `[-]`: a number without one), what is used where a key without a
-default value is left out follows `default: ` at its end, and `examples` has a value where the default is none.
+default value is left out follows `default: ` at its end, and `examples` has a value where there is no default.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ DEFAULT = re.compile(r"[;,]? ?\bdefault: (.*)$")
 
 
 class CaseTable(NamedTuple):
-    """A table of the case file; of a table with kinds, one of them."""
+    """Table of the case file; where a table has kinds, one of its kinds."""
 
     path: tuple[str, ...]  # ("structure", "openings")
     declared: type[BaseModel]
@@ -47,20 +47,20 @@ class CaseTable(NamedTuple):
 
     @property
     def heading(self) -> str:
-        """As it begins in a file: [joints.NAME], [[structure]]."""
+        """Heading of the table as a file writes it: [joints.NAME], [[structure]]."""
         name = ".".join(self.path)
         return f"[[{name}]]" if self.several else f"[{name}]"
 
     @property
     def dimension(self) -> int | None:
-        """The only dimension of cases that may have it, or this kind of it; None: both."""
+        """Only dimension of cases that allows this table or kind; None: both."""
         inside = (known_in(self.path[:k]) for k in range(1, len(self.path) + 1))
         of_kind = known_in((*self.path, self.tag), self.kinds[0]) if self.tag and self.kinds else None
         return next(filter(None, inside), None) or of_kind or getattr(self.declared, "only_in", None)
 
     @property
     def about(self) -> str:
-        """What it is: its docstring without the heading there, a paragraph a line; of a law, that of the module."""
+        """Description of the table from its docstring without the heading; for a joint law, from that of its module."""
         source = sys.modules[self.declared.__module__] if self.tag == "law" else self.declared
         paragraphs = re.split(r"\n\s*\n", inspect.cleandoc(source.__doc__ or ""))
         lines = [" ".join(paragraph.split()) for paragraph in paragraphs]
@@ -72,13 +72,13 @@ class CaseTable(NamedTuple):
 
     @property
     def keys(self) -> list[CaseKey]:
-        """Its keys, the one that names the kind first."""
+        """List the keys of the table, the one that names the kind first."""
         names = sorted(self.declared.model_fields, key=lambda name: name != self.tag)
         return [CaseKey(self, name, self.declared.model_fields[name]) for name in names]
 
 
 class CaseKey(NamedTuple):
-    """A key of a table."""
+    """Key of a table of the case file: name, type, limits and description."""
 
     table: CaseTable
     name: str
@@ -86,56 +86,56 @@ class CaseKey(NamedTuple):
 
     @property
     def path(self) -> str:
-        """With the table: joints.NAME.friction."""
+        """Key path including the table: joints.NAME.friction."""
         return ".".join((*self.table.path, self.name))
 
     @property
     def dimension(self) -> int | None:
-        """The only dimension of cases that may have it, where its table is in both; None: both."""
+        """Only dimension of cases that allows this key, where its table is allowed in both; None: both."""
         return None if self.table.dimension else known_in((*self.table.path, self.name))
 
     @property
     def kind(self) -> DeclaredType:
-        """Its type and the limits on its value."""
+        """Declared type of the key and the limits on its value."""
         return kind_of(self.field.annotation, self.field.metadata)
 
     @property
     def description(self) -> str:
-        """As declared; of the key that names the kind, what the kind is."""
+        """Description of the key as declared; for the key that names the kind, the description of that kind."""
         if self.names_kind:
             return self.table.about.split("\n")[0].rstrip(".")
         return self.field.description or ""
 
     @property
     def units(self) -> tuple[str, ...]:
-        """Of its numbers; ("-",) for numbers without one, () where there is nothing to have a unit."""
+        """Units of the numbers of the key; ("-",) for numbers without a unit, () for values that have none."""
         return tuple(dict.fromkeys(BRACKETS.findall(self.description))) if self.numeric else ()
 
     @property
     def numeric(self) -> bool:
-        """Whether its value is or holds numbers that are no mere counts."""
+        """Tell whether the value is or contains physical numbers, not mere counts."""
         return _holds_float(self.kind)
 
     @property
     def meaning(self) -> str:
-        """In words, without the default and, where there is only one, the unit."""
+        """Meaning of the key in words, without the default and, where there is only one, the unit."""
         text = DEFAULT.sub("", self.description)
         text = (BRACKETS.sub("", text) if len(self.units) == 1 else text).strip()
         return text + only_in(self.dimension)
 
     @property
     def allowed(self) -> str:
-        """What may stand there: `a number > 0 or 'auto'`."""
+        """Allowed values of the key in words: `a number > 0 or 'auto'`."""
         return allowed((self.kind,))
 
     @property
     def required(self) -> bool:
-        """Whether it must be given."""
+        """Tell whether the key must be given."""
         return self.field.is_required()
 
     @property
     def default(self) -> str:
-        """What holds where it is left out: TOML text, or in words; empty where that is nothing."""
+        """Default of the key as TOML text or in words; empty where there is none."""
         said = DEFAULT.search(self.description)
         if said:
             return said[1]
@@ -144,34 +144,34 @@ class CaseKey(NamedTuple):
 
     @property
     def _default(self) -> Any:
-        """The declared default as plain values; None where there is none."""
+        """Declared default of the key as plain values; None where there is none."""
         value = None if self.required else self.field.get_default(call_default_factory=True)
         return value.model_dump() if isinstance(value, BaseModel) else value
 
     @property
     def only_tables(self) -> bool:
-        """Whether its value is a table, or tables, and nothing else: these speak for themselves."""
+        """Tell whether the value can only be a table or several tables."""
         return all(bool(list(_inside(choice))) for choice in self.kind.choices)
 
     @property
     def names_kind(self) -> bool:
-        """Whether it says which kind of table this is."""
+        """Tell whether the key selects the kind of its table."""
         return self.name == self.table.tag
 
     @property
     def example(self) -> str:
-        """A line with it, without the table; empty for a table of tables that has sections of its own."""
+        """Example line of a file with this key; empty for a table of tables that has sections of its own."""
         value = self.field.examples[0] if self.field.examples else self._default
         return "" if value in EMPTY_VALUES else f"{self.name} = {toml(value)}"
 
 
 def only_in(dimension: int | None) -> str:
-    """The remark about a table or key that cases of one dimension alone may have."""
+    """Return the remark for a table or key that is allowed in one dimension only."""
     return "" if dimension is None else f" ({dimension}D only)"
 
 
 def json_schema(model: type[BaseModel]) -> dict[str, Any]:
-    """JSON Schema of a case file; descriptions say what cases of one dimension alone may have."""
+    """Return the JSON Schema of a case file; descriptions name the dimension where only one is allowed."""
     schema = model.model_json_schema()
     for table in tables(model):
         place = schema["$defs"][table.declared.__name__] if table.path else schema
@@ -185,7 +185,7 @@ def json_schema(model: type[BaseModel]) -> dict[str, Any]:
 
 @cache
 def tables(model: type[BaseModel]) -> tuple[CaseTable, ...]:
-    """All tables of a case in the order of their keys, those in others after them; the case itself comes first."""
+    """List all tables of a case file, each followed by its subtables; the case itself comes first."""
     found: dict[tuple[tuple[str, ...], type[BaseModel]], CaseTable] = {}
     for table in _below(CaseTable((), model, False, "", (), "")):
         known = found.setdefault((table.path, table.declared), table)
@@ -195,7 +195,7 @@ def tables(model: type[BaseModel]) -> tuple[CaseTable, ...]:
 
 
 def _below(table: CaseTable) -> Iterator[CaseTable]:
-    """A table and the ones in it."""
+    """List a table and all its subtables."""
     yield table
     for name, field in table.declared.model_fields.items():
         for declared, steps, several in _inside(kind_of(field.annotation, field.metadata)):
@@ -208,7 +208,7 @@ def _below(table: CaseTable) -> Iterator[CaseTable]:
 def _inside(
     kind: DeclaredType, steps: tuple[str, ...] = (), several: bool = False
 ) -> Iterator[tuple[type[BaseModel], tuple[str, ...], bool]]:
-    """Tables that a value of this kind may be or hold: class, path to it, whether there may be many."""
+    """Find the tables that a value may be or contain: class, path to it, and whether there may be several."""
     for choice in kind.choices:
         arguments, origin = get_args(choice.type), get_origin(choice.type)
         if is_table(choice.type):
@@ -221,21 +221,21 @@ def _inside(
 
 
 def _holds_float(kind: DeclaredType) -> bool:
-    """Whether a value of this kind is or may hold a float, tables aside."""
+    """Tell whether a value of this type is or may contain a float, tables aside."""
     inner = [kind_of(part) for choice in kind.choices for part in get_args(choice.type) if part is not Ellipsis]
     literal = get_origin(kind.type) is Literal
     return any(choice.type is float for choice in kind.choices) or (not literal and any(map(_holds_float, inner)))
 
 
 def _kind(declared: type[BaseModel], tag: str) -> str:
-    """The kind that a class is; empty where its table has no kinds."""
+    """Return the kind that a table class declares; empty where its table has no kinds."""
     field = declared.model_fields.get(tag)
     names = get_args(field.annotation) if field is not None and get_origin(field.annotation) is Literal else ()
     return names[0] if len(names) == 1 else ""
 
 
 def toml(value: Any) -> str:
-    """A value as it stands in a file, on one line."""
+    """Format a value as TOML on one line."""
     if isinstance(value, dict):
         pairs = [f"{_key(key)} = {toml(item)}" for key, item in value.items() if item is not None]
         return "{ " + ", ".join(pairs) + " }" if pairs else "{}"
@@ -248,5 +248,5 @@ def toml(value: Any) -> str:
 
 
 def _key(name: str) -> str:
-    """A key as it stands in a file: in quotes where it has dots of its own."""
+    """Format a key as TOML, quoted where it contains dots."""
     return name if re.fullmatch(r"[\w-]+", name, re.ASCII) else toml(name)

@@ -1,4 +1,4 @@
-"""[[load]], [[pressure]], [[fill]], [[restraint]]: forces at points and along lines, pressure, earth, motions held."""
+"""Tables [[load]], [[pressure]], [[fill]] and [[restraint]]: point and line loads, pressure, earth, restraints."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ class Load(Selection):
 
     @property
     def falls(self) -> bool:
-        """Whether it acts on what lies under it, whatever block is named."""
+        """Tell whether the load acts on the blocks under a line or area instead of named blocks."""
         return self.line is not None or self.spread is not None or self.selected is None
 
 
@@ -113,7 +113,7 @@ class Fluid(CaseModel):
 
 
 class Earth(CaseModel):
-    """pressure.earth: earth with a level surface, which pushes sideways with a share of its weight.
+    """pressure.earth: lateral earth pressure below a level surface, a share of the vertical stress.
 
     A stress field: sideways `coefficient` times the vertical stress, which is the weight above; on faces that look up
     as well it lies with its weight. Faces that look down have the thrust alone.
@@ -150,7 +150,7 @@ class Earth(CaseModel):
 
     @property
     def sideways(self) -> float:
-        """Horizontal over vertical stress at an upright face: given, or of active earth pressure.
+        """Lateral earth pressure coefficient, horizontal over vertical stress: given, or active.
 
         Rankine (1857): tan²(45° − φ/2); with friction δ on the wall the horizontal part of that of Coulomb (1776):
         cos²φ / (1 + √(sin(φ + δ) sin φ / cos δ))².
@@ -215,7 +215,7 @@ class Pressure(Selection):
         return self
 
     def direction(self, dimension: int) -> tuple[float, ...] | None:
-        """Which way its faces look, if that is the same everywhere; None: they look at a point, or any way."""
+        """Common outward direction of the loaded faces; None where the faces look in several directions."""
         if not isinstance(self.face, str):
             return self.face
         if self.face == "all":
@@ -226,7 +226,7 @@ class Pressure(Selection):
 
 
 class Fill(Selection):
-    """[[fill]]: earth that lies on blocks up to a level, as dead load, and the thrust that it has.
+    """[[fill]]: earth fill on blocks up to a level: its weight as dead load, and its thrust.
 
     Its weight above each exposed face that looks up, and a share of the vertical stress sideways on inclined faces,
     and on upright ones within its extent. What lies under another block has no fill on it.
@@ -265,14 +265,14 @@ class Fill(Selection):
 
     @property
     def sideways(self) -> float:
-        """Horizontal over vertical stress: given, or of earth at rest, 1 − sin φ (Jaky 1944)."""
+        """Lateral earth pressure coefficient: given, or at rest, 1 − sin φ (Jaky 1944)."""
         if self.friction_angle_deg is not None:
             return 1.0 - math.sin(math.radians(self.friction_angle_deg))
         return self.coefficient or 0.0
 
     @property
     def sides(self) -> tuple[Pair, ...]:
-        """From where to where it lies along x, in space also along y [m]; (): wherever the blocks are."""
+        """Extent of the fill along x, in space also along y [m]; (): above all blocks."""
         if self.extent is None:
             return ()
         low, high = (end if isinstance(end, tuple) else (end,) for end in self.extent)
@@ -307,7 +307,7 @@ Motion = Literal["x", "y", "z", "rotation", "rotation_x", "rotation_y", "rotatio
 
 
 class Restraint(Selection):
-    """[[restraint]]: motions of blocks that something outside holds, such as the turning of a beam that is guided.
+    """[[restraint]]: prevented motions of blocks, such as the rotation of a guided beam.
 
     The centroid of each block does not move along what is held, and the block does not turn about it. What holds it
     gives whatever force or moment that takes and does no work; where the base moves, it moves along.

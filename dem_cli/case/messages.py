@@ -1,4 +1,4 @@
-"""Validation errors in the words of the case file: value found, what is allowed, the nearest name."""
+"""Translate validation errors into messages about the case file: value found, what is allowed, the nearest name."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from dem_cli.input_limits import MOST_MISTAKES
 
 
 class ErrorLocation(NamedTuple):
-    """Location of a validation error.
+    """Location of a validation error in the case file.
 
     kinds: what may stand there; owner: the table around; union, choices: path and members of the union above;
     kin: tables of other kinds or laws, of which a word in the case chose this one.
@@ -44,7 +44,7 @@ class ErrorLocation(NamedTuple):
 
 
 def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str, Any]) -> list[CaseProblem]:
-    """One problem per mistake. A value that fits no member of a union is one mistake, not one per member."""
+    """Convert validation errors to one problem per mistake; a value that fits no member of a union is one mistake."""
     found: list[CaseProblem] = []
     unions: dict[KeyPath, list[tuple[ErrorLocation, Any]]] = {}
     errors = error.errors(include_url=False)[:MOST_MISTAKES]
@@ -80,13 +80,13 @@ def problems_from(error: ValidationError, model: type[BaseModel], data: dict[str
 
 
 def foremost(found: Sequence[CaseProblem]) -> list[CaseProblem]:
-    """The mistakes that are told, and how many more there are."""
+    """Keep the first mistakes of a long list and add how many more there are."""
     rest = len(found) - MOST_MISTAKES
     return [*found[:MOST_MISTAKES], CaseProblem((), f"and {rest:,} more mistakes")] if rest > 0 else [*found]
 
 
 def first_of_list(found: Sequence[CaseProblem]) -> list[CaseProblem]:
-    """Of vectors of one list that are of another dimension, the first says how many there are: all have one cause."""
+    """Merge the errors of vectors in one list that all have the wrong dimension into the first of them."""
     alike: dict[KeyPath, list[CaseProblem]] = {}
     for problem in found:
         if isinstance(problem.path[-1] if problem.path else "", int) and problem.message.endswith(OTHER_DIMENSION):
@@ -103,7 +103,7 @@ def first_of_list(found: Sequence[CaseProblem]) -> list[CaseProblem]:
 
 
 def describe(spot: ErrorLocation, item: Any, data: dict[str, Any]) -> CaseProblem:
-    """One error of the validator as a problem."""
+    """Convert one error of the validator to a problem with key path and message."""
     path, kind = spot.path, item["type"]
     if kind == "extra_forbidden":
         return CaseProblem(path, unknown_key(str(path[-1]), spot.owner, spot.kin), at_key=True)
@@ -134,7 +134,7 @@ def describe(spot: ErrorLocation, item: Any, data: dict[str, Any]) -> CaseProble
 
 
 def follow(model: type[BaseModel], loc: Sequence[str | int], error: str) -> ErrorLocation:
-    """Walk the declared types along `loc`, leaving out the items that only name a member of a union."""
+    """Follow a validation error's location through the declared types, leaving out the members of unions."""
     path: KeyPath = ()
     kinds: tuple[DeclaredType, ...] = (DeclaredType(model),)
     owner: type[BaseModel] | None = None
@@ -161,7 +161,7 @@ def follow(model: type[BaseModel], loc: Sequence[str | int], error: str) -> Erro
 
 
 def element(kind: DeclaredType, item: str | int) -> tuple[DeclaredType, ...]:
-    """What stands at a key or index of a value of this kind; nothing where it has no such part."""
+    """Return the declared types at a key or index of a value; empty where there is no such part."""
     arguments = get_args(kind.type)
     origin = get_origin(kind.type)
     if is_table(kind.type):
@@ -176,19 +176,19 @@ def element(kind: DeclaredType, item: str | int) -> tuple[DeclaredType, ...]:
 
 
 def has_tag(declared: Any, tag: str | int) -> bool:
-    """Whether a table is the member of a discriminated union that `tag` names."""
+    """Test whether a table is the member of a discriminated union that `tag` names."""
     fields = declared.model_fields if is_table(declared) else {}
     return any(tag in get_args(fields[key].annotation) for key in ("kind", "law") if key in fields)
 
 
 def tag_of(table: type[BaseModel]) -> tuple[str, str] | None:
-    """Key and word that choose a table among others of its kin, such as ("law", "fracture")."""
+    """Return the key and value that select a table among its alternatives, such as ("law", "fracture")."""
     fields = table.model_fields
     return next(((key, str(get_args(fields[key].annotation)[0])) for key in ("kind", "law") if key in fields), None)
 
 
 def unknown_key(name: str, owner: type[BaseModel] | None, kin: Sequence[DeclaredType] = ()) -> str:
-    """What to say about a key that the table does not have; kin: tables of other kinds or laws, which may have it."""
+    """Return the message for a key that the table does not have; kin: tables of other kinds, which may have it."""
     names = list(owner.model_fields) if owner else []
     tables = [member.type for member in kin if is_table(member.type)]
     tags = [tag_of(table) for table in tables if name in table.model_fields] if owner in tables else []
@@ -201,7 +201,7 @@ def unknown_key(name: str, owner: type[BaseModel] | None, kin: Sequence[Declared
 
 
 def value_at(data: Any, path: KeyPath) -> Any:
-    """The value found in the file at a key path; None where there is none."""
+    """Return the value at a key path of the case file; None where there is none."""
     for key in path:
         try:
             data = data[key]

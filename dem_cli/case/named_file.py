@@ -1,4 +1,4 @@
-"""Files that a case names: paths that start at the case file, and what to say of one that is not there."""
+"""Resolve files that a case names relative to the case file, and report missing ones."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from dem_cli.input_limits import DRAWING_BYTES, UnreadableInput, read_bounded, w
 
 
 def absolute_path(file: str, info: ValidationInfo) -> str:
-    """A path of a case that was loaded, which no longer depends on where the case lies."""
+    """Return the absolute path of a file that a case names relative to itself."""
     folder = (info.context or {}).get("folder")
     path = Path(file).expanduser()
     if folder is None or path.is_absolute():
@@ -22,7 +22,7 @@ def absolute_path(file: str, info: ValidationInfo) -> str:
 
 
 def digest(file: str | Path) -> str:
-    """What a file holds, in short (SHA-256); "" where it cannot be read: what is wrong is said by what reads it."""
+    """Hash the content of a file (SHA-256); "" where it cannot be read, which its reader reports."""
     try:
         return hashlib.sha256(read_bounded(Path(file), DRAWING_BYTES)).hexdigest()
     except (OSError, UnreadableInput):
@@ -30,7 +30,7 @@ def digest(file: str | Path) -> str:
 
 
 def is_file(path: Path) -> bool:
-    """Whether there is such a file; False where its name is longer than any file's, or nobody lets us look."""
+    """Test whether a file exists; False also where its name is too long or access is denied."""
     try:
         return path.is_file()
     except OSError:
@@ -38,7 +38,7 @@ def is_file(path: Path) -> bool:
 
 
 def missing_file(path: Path, what: str) -> str:
-    """`no such file: /x/east.csv, did you mean 'east.csv'?`; what: what it should be, such as "a record"."""
+    """Return the message for a missing file with the nearest name; what: what it should be, such as "a record"."""
     try:
         if path.exists():
             return f"{path} is {what_else(path)}; {what} is a file"

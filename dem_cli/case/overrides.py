@@ -1,4 +1,4 @@
-"""Overrides, `--set KEY=VALUE` and `set={KEY: value}`: one value of a case changed before anything is checked."""
+"""Overrides of one value of a case, `--set KEY=VALUE` or `set={KEY: value}`, applied before validation."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NAMED = ("materials", "joints")  # tables of named tables: a new name is taken f
 
 
 class Override(NamedTuple):
-    """Override of one value: key path as typed and resolved, the value, and where it stands (a sweep; () is --set)."""
+    """Override of one value of a case: key path as typed and resolved, value, and place in a sweep; () is --set."""
 
     text: str
     path: KeyPath
@@ -27,7 +27,7 @@ class Override(NamedTuple):
 
 
 def parse(text: str) -> Override:
-    """`joints.dry.friction=0.6` -> an Override. The value is a TOML literal; what is none is a string."""
+    """Parse an override `joints.dry.friction=0.6`. The value is a TOML literal; any other text is a string."""
     key, equals, value = text.partition("=")
     key = key.strip()
     if not equals or not key:
@@ -39,7 +39,7 @@ def parse(text: str) -> Override:
 
 
 def override_of(key: str, value: Any) -> Override:
-    """A key path and a Python value -> an Override. Raises UsageError for what is no key path or no value of TOML."""
+    """Create an override from a key path and a Python value. Raises UsageError for an invalid path or value."""
     path = key_path(key) if isinstance(key, str) else ()
     if not path:
         raise UsageError(f"set: {key!r} is not a key path, such as 'joints.dry.friction' or 'structure.0.courses'")
@@ -47,7 +47,7 @@ def override_of(key: str, value: Any) -> Override:
 
 
 def plain_value(value: Any, where: str) -> Any:
-    """A Python value as TOML has it: tuples and arrays as lists, paths as text. Raises UsageError for what has none."""
+    """Convert a Python value to TOML types: arrays to lists, paths to text. Raises UsageError where it cannot."""
     if isinstance(value, Mapping):
         return {str(key): plain_value(item, f"{where}.{key}") for key, item in value.items()}
     if hasattr(value, "tolist"):  # an array or a number of numpy
@@ -62,7 +62,7 @@ def plain_value(value: Any, where: str) -> Any:
 
 
 def key_path(text: str) -> KeyPath:
-    """`joints.dry.friction` as its keys; () for a text that is no key path."""
+    """Split `joints.dry.friction` into its keys; () for a text that is no key path."""
     try:
         return single_path(parsed(f"{text} = 0"))
     except tomli.TOMLDecodeError:
@@ -70,7 +70,7 @@ def key_path(text: str) -> KeyPath:
 
 
 def value_at(table: Any, path: KeyPath) -> Any:
-    """The value at a key path of a case (or of any table of it); None where there is none."""
+    """Return the value at a key path of a case or of one of its tables; None where there is none."""
     try:
         for key in path:
             table = below(table, str(key))
@@ -80,7 +80,7 @@ def value_at(table: Any, path: KeyPath) -> Any:
 
 
 def below(table: Any, key: str) -> Any:
-    """What a table or list of a validated case holds under one key. Raises KeyError where it has no such key."""
+    """Return the value under one key of a table or list of a validated case. Raises KeyError where there is none."""
     if isinstance(table, BaseModel) and key in type(table).model_fields:
         return getattr(table, key)
     if isinstance(table, Mapping) and key in table:
@@ -91,7 +91,7 @@ def below(table: Any, key: str) -> Any:
 
 
 def single_path(table: dict[str, Any]) -> KeyPath:
-    """The keys of nested tables with one key each."""
+    """Return the keys of nested tables with one key each."""
     path: KeyPath = ()
     node: Any = table
     while isinstance(node, dict):
@@ -101,7 +101,7 @@ def single_path(table: dict[str, Any]) -> KeyPath:
 
 
 def literal(text: str) -> Any:
-    """A TOML value; a text that is none is taken as a string."""
+    """Parse a TOML value; a text that is no TOML value is taken as a string."""
     try:
         table = parsed(f"value = {text}")
     except tomli.TOMLDecodeError:
@@ -113,7 +113,7 @@ Outcome = tuple[Override, CaseProblem | None]
 
 
 def apply(data: dict[str, Any], override: Override, tables: Collection[str]) -> Outcome:
-    """Change `data` in place; gives the override with its indices resolved and what is wrong with its path.
+    """Apply an override to `data` in place; returns it with resolved indices and any problem of its path.
 
     A missing table is made if the format has it (`tables`: keys of the file's top level).
     """
@@ -144,5 +144,5 @@ def apply(data: dict[str, Any], override: Override, tables: Collection[str]) -> 
 
 
 def failed(override: Override, path: KeyPath, message: str) -> Outcome:
-    """An override that cannot be applied."""
+    """Return the outcome of an override that cannot be applied."""
     return override._replace(path=path), CaseProblem(path, message)

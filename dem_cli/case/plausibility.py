@@ -1,4 +1,4 @@
-"""Plausibility of a case: what is allowed, but looks like a slip, most often a wrong unit, and which is likely."""
+"""Plausibility checks of a case: values that are allowed but look like a slip, most often a wrong unit."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ VERTICAL = 1e-3  # horizontal share of a direction that counts as none
 
 
 class UsualRange(NamedTuple):
-    """What a number is between in nearly every case, and the units that slip in."""
+    """Usual range of a physical quantity, and the units that it may have been given in by mistake."""
 
     low: float
     high: float
@@ -30,7 +30,7 @@ class UsualRange(NamedTuple):
     others: Mapping[str, float] = {}  # other units, and one of them in ours
 
     def doubt(self, value: float, *also: str) -> str | None:
-        """The words about an unusual value; None of a usual one. also: what else may have been meant."""
+        """Return the warning about an unusual value; None for a usual one. also: other likely meanings."""
         if self.low <= value <= self.high:
             return None
         text = f"{show(value)} {self.unit} is unusual for {self.what}"
@@ -70,7 +70,7 @@ STEEPEST = 2.0  # friction coefficient, tan(63°)
 
 
 def doubts(case: Case) -> Iterator[CaseProblem]:
-    """Warnings about a valid case, from what it says; `size_doubts` are about its blocks."""
+    """Yield warnings about a valid case from its tables; `size_doubts` checks its blocks."""
     yield from _material_doubts(case)
     for name, joint in case.joints.items():
         yield from _joint_doubts(joint, ("joints", name))
@@ -91,7 +91,7 @@ def doubts(case: Case) -> Iterator[CaseProblem]:
 
 
 def _material_doubts(case: Case) -> Iterator[CaseProblem]:
-    """Densities; a heavy one beside usual ones is a load that is drawn as a block."""
+    """Check densities; one heavy material among usual ones is taken for a load drawn as a block."""
     usual = any(USUAL["density"].doubt(material.density) is None for material in case.materials.values())
     for name, material in case.materials.items():
         text = USUAL["density"].doubt(material.density)
@@ -100,7 +100,7 @@ def _material_doubts(case: Case) -> Iterator[CaseProblem]:
 
 
 def _joint_doubts(joint: CaseModel, path: KeyPath) -> Iterator[CaseProblem]:
-    """Friction and strengths of a joint; 0 means that there is none."""
+    """Check friction coefficients and strengths of a joint; 0 means that there is none."""
     friction = getattr(joint, "friction", None)
     if friction is not None and STEEPEST < friction < LOCKED and friction not in NO_SLIP:
         angle = math.degrees(math.atan(friction))
@@ -115,7 +115,7 @@ def _joint_doubts(joint: CaseModel, path: KeyPath) -> Iterator[CaseProblem]:
 
 
 def _steel_doubts(case: Case) -> Iterator[CaseProblem]:
-    """Moduli, yield stresses and sections of ties and bars in other units."""
+    """Check moduli, yield stresses and sections of ties and bars for wrong units."""
     tables: list[tuple[KeyPath, CaseModel]] = [(("tie", i), tie) for i, tie in enumerate(case.tie)]
     tables += [(("bars", name), bar) for name, bar in case.bars.items()]
     for path, table in tables:
@@ -126,7 +126,7 @@ def _steel_doubts(case: Case) -> Iterator[CaseProblem]:
 
 
 def _bar_doubts(case: Case) -> Iterator[CaseProblem]:
-    """Elements of bars so long that bond acts too stiffly."""
+    """Check for bar elements so long that bond acts too stiffly."""
     for i, table in enumerate(case.reinforcement):
         decay = case.bars[table.bar].decay
         if table.element is not None and decay * table.element > COARSE:
@@ -138,7 +138,7 @@ def _bar_doubts(case: Case) -> Iterator[CaseProblem]:
 
 
 def _live_doubts(case: Case) -> Iterator[CaseProblem]:
-    """Live loads and directions that the analysis does not use, and those that push nothing sideways."""
+    """Check for live loads and directions that the analysis does not use or that act vertically only."""
     pattern = getattr(case.analysis, "pattern", None)
     live: list[KeyPath] = [("load", i) for i, load in enumerate(case.load) if load.kind == "live"]
     live += [("pressure", i) for i, pressure in enumerate(case.pressure) if pressure.kind == "live"]
@@ -161,7 +161,7 @@ def _live_doubts(case: Case) -> Iterator[CaseProblem]:
 
 
 class BlockSizes(NamedTuple):
-    """Of the blocks that can move, as they stand in the case file."""
+    """Sizes and thicknesses of the movable blocks in the order of the case file."""
 
     ids: Sequence[str]
     paths: Sequence[KeyPath]  # of the tables that they come from
@@ -173,7 +173,7 @@ class BlockSizes(NamedTuple):
 
 
 def size_doubts(blocks: BlockSizes) -> Iterator[CaseProblem]:
-    """Warnings about blocks that are too large, or too deep, to be in metres: one each, at the first such block."""
+    """Yield one warning each about blocks too large or too thick to be given in metres."""
     if not blocks.sizes:
         return
     several = len(blocks.sizes) >= MANY
@@ -190,4 +190,4 @@ def size_doubts(blocks: BlockSizes) -> Iterator[CaseProblem]:
         yield CaseProblem((*blocks.paths[deepest], "thickness"), text)
 
 
-DEEP, DEEPER_THAN_WIDE = 5.0, 10.0  # [m]; a depth above both is none, whatever the structure
+DEEP, DEEPER_THAN_WIDE = 5.0, 10.0  # [m]; a depth above both is implausible for any structure

@@ -1,4 +1,4 @@
-"""Reader of case files: from TOML to a validated case; every mistake in it at once, each with its line and column."""
+"""Read a case file from TOML to a validated case, reporting every mistake at once with line and column."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ SYNTAX = {  # how messages of the parser begin -> the same in plain words
 
 
 class CaseSource:
-    """The text that a case came from: says where a problem stands."""
+    """Source text of a case, which locates problems by line and column."""
 
     def __init__(self, path: Path, text: str, overrides: Sequence[Override] = ()):
         self.path = path
@@ -47,26 +47,26 @@ class CaseSource:
 
     @property
     def name(self) -> str:
-        """What results, and a case without a title, are called."""
+        """Name of the results, and of a case without a title."""
         return self.path.stem.strip("<>")
 
     @cached_property
     def places(self) -> KeyPositions:
-        """Where every key and value of the text stands."""
+        """Positions of every key and value in the text."""
         return KeyPositions(self.text)
 
     def locate(self, path: KeyPath, key: bool = False) -> tuple[int, int]:
-        """Line and column, from 1, of the value at a key path (or of its key)."""
+        """Return line and column, from 1, of the value at a key path, or of its key."""
         return self.places.locate(self.as_written(path), key)
 
     def as_written(self, path: KeyPath) -> KeyPath:
-        """A key path without the number of a table that is not written as a list: motion.0.file -> motion.file."""
+        """Convert a key path to the file's form, without the index of a single table: motion.0.file -> motion.file."""
         one = path[1:2] == (0,) and path[0] in cross_references.ONE_OR_MORE
         alone = one and path[:2] not in self.places.values
         return path[:1] + path[2:] if alone else path
 
     def asked(self, override: Override) -> str:
-        """Where a value was asked for."""
+        """Return the origin of an overridden value as the beginning of a message."""
         if not override.place:
             return f"{override.origin} "
         line, column = self.locate(override.place)
@@ -74,14 +74,14 @@ class CaseSource:
 
     @contextmanager
     def located(self) -> Iterator[None]:
-        """Gives mistakes that are found later, in what the case describes, their place in the file."""
+        """Add the place in the file to case errors raised inside this context."""
         try:
             yield
         except CaseError as error:
             raise CaseError(foremost(error.problems), self.render) from None
 
     def render(self, problem: CaseProblem) -> str:
-        """`case.toml:8:1: joints.dry.frcition: unknown key, did you mean 'friction'?`"""
+        """Format a problem as `case.toml:8:1: joints.dry.frcition: unknown key, did you mean 'friction'?`"""
         path = self.as_written(problem.path)
         for override in self.overrides:
             if path and override.path == path[: len(override.path)]:
@@ -98,7 +98,7 @@ class CaseSource:
 
 
 class LoadedCase(CaseSource):
-    """A valid case, the text it came from and what is doubtful about it (`warnings`, one line each)."""
+    """Valid case with its source text and its warnings, one line each."""
 
     def __init__(self, case: Case, source: CaseSource):
         super().__init__(source.path, source.text, source.overrides)
@@ -132,12 +132,12 @@ def read_case(
 
 
 def validate(data: dict[str, Any], model: type[Case], source: CaseSource) -> Case:
-    """The case in `data`, of this class; as `validated`."""
+    """Validate plain data against one class of cases. Raises CaseError with every mistake."""
     return validated(data, lambda tables: model, source)
 
 
 def validated(data: dict[str, Any], model_of: ModelOf, source: CaseSource) -> Case:
-    """The case in `data`, or CaseError with every mistake in the order of the file."""
+    """Validate plain data against a class that depends on it. Raises CaseError with every mistake in file order."""
     found = list(impossible_values(data))
     if found:
         raise CaseError(found, source.render)
@@ -159,7 +159,7 @@ def validated(data: dict[str, Any], model_of: ModelOf, source: CaseSource) -> Ca
 
 
 def _valid(data: dict[str, Any], model_of: ModelOf, context: dict[str, Any]) -> Case:
-    """Raises ValidationError of the class that knows everything."""
+    """Validate with the narrow class of cases first; raises ValidationError of the complete class."""
     try:
         return model_of(data).model_validate(data, context=context)
     except ValidationError:
@@ -167,7 +167,7 @@ def _valid(data: dict[str, Any], model_of: ModelOf, context: dict[str, Any]) -> 
 
 
 def parse_toml(path: Path, text: str) -> dict[str, Any]:
-    """TOML as plain data; a syntax error as file, line and column."""
+    """Parse TOML to plain data; a syntax error gives file, line and column."""
     if not text.strip():
         message = f"{path}: the file is empty; `dem new wall` prints a case to start from"
         raise CaseError([CaseProblem((), message)])
@@ -179,7 +179,7 @@ def parse_toml(path: Path, text: str) -> dict[str, Any]:
 
 
 def syntax_message(message: str) -> str:
-    """What the parser says, for people."""
+    """Rewrite an error message of the TOML parser in plain words."""
     for start, words in SYNTAX.items():
         if message.startswith(start):
             return words
@@ -188,7 +188,7 @@ def syntax_message(message: str) -> str:
 
 
 def read_text(path: Path) -> str:
-    """The text of a UTF-8 file, with or without byte order mark."""
+    """Read the text of a UTF-8 file, with or without byte order mark."""
     try:
         raw = read_bounded(path, CASE_BYTES, pipes=True)
     except FileNotFoundError:
@@ -201,7 +201,7 @@ def read_text(path: Path) -> str:
 
 
 def decoded(path: Path, raw: bytes) -> str:
-    """The text that the file holds."""
+    """Decode the bytes of a UTF-8 file. Raises CaseError where they are no such text."""
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -211,7 +211,7 @@ def decoded(path: Path, raw: bytes) -> str:
 
 
 def near_file(path: Path) -> str:
-    """`, did you mean 'wall_21.toml'?` for a TOML file of nearly that name in the same folder."""
+    """Suggest a TOML file of nearly the same name in the same folder, for a message."""
     if not path.parent.is_dir():
         return f" (there is no folder '{path.parent}')"
     files = {file.stem: file for file in sorted(path.parent.glob("*.toml")) if file.is_file()}

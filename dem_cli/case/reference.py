@@ -1,4 +1,4 @@
-"""[reference]: what the answer is compared with, where that comes from, and how near it must come."""
+"""Table [reference]: the expected value of an answer, its source, and the tolerance of the comparison."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NO_TOLERANCE = "missing; must be a number > 0 (largest difference that passes), 
 
 
 class Reference(CaseModel):
-    """[reference], or several [[reference]]: what the answer is compared with."""
+    """[reference], or several [[reference]]: the expected value of an answer, with its tolerance."""
 
     failure_load: NonNegative | None = Field(
         default=None, description="expected load multiplier at failure [-]", examples=[0.64]
@@ -136,24 +136,24 @@ class Reference(CaseModel):
             raise KeyProblem(f"{show(self.reason)} is not allowed without 'tolerance' or 'relative'", "reason")
 
     def resolved_to(self, resolution: float | None) -> None:
-        """Say how finely the analysis of its case resolves a load or factor, a share of it; None: it does not."""
+        """Set the relative resolution of loads and factors of the analysis; None: it has none."""
         self._resolution = resolution
 
     @property
     def path(self) -> str:
-        """Of the quantity in summary.json."""
+        """Path of the compared quantity in summary.json."""
         return self.quantity or "failure_load"
 
     @property
     def expected(self) -> bool | float | Pair | Loads | Word:
-        """The value of the quantity, in either form."""
+        """Expected value of the compared quantity, from failure_load or value."""
         value = self.failure_load if self.quantity is None else self.value
         assert value is not None
         return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
     @property
     def allowance(self) -> float | None:
-        """Largest difference that passes, in the unit of the quantity; beyond an interval; None for words."""
+        """Absolute tolerance of the comparison, in the unit of the quantity; None for text."""
         if isinstance(self.expected, (bool, str)):
             return None
         bounds = self.expected if isinstance(self.expected, tuple) else (self.expected,)

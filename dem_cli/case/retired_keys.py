@@ -1,4 +1,4 @@
-"""Retired keys of the case file: first still read, with a warning that has the new name, later refused with it.
+"""Retired keys of the case file: at first still read, with a warning that names the new key, later refused.
 
 What a version promises about keys stands in docs/versions.md.
 """
@@ -13,7 +13,7 @@ from dem_cli.errors import CaseProblem, KeyPath
 
 
 class RetiredKey(NamedTuple):
-    """A key that has another name in the same table, or none any more."""
+    """Key of the case file that was renamed or removed in a named version."""
 
     path: str  # as docs/case.md has it, without numbers: "analysis.step", "joints.NAME.kn", "structure.openings.width"
     version: str  # that retired it
@@ -26,9 +26,9 @@ RETIRED: tuple[RetiredKey, ...] = ()
 
 
 def rename(data: dict[str, Any], overridden: Collection[KeyPath] = ()) -> tuple[list[CaseProblem], list[CaseProblem]]:
-    """Gives retired keys in `data` the names that they have now, in place: warnings, and what is refused.
+    """Rename retired keys in `data` in place; returns the warnings and the problems.
 
-    overridden: key paths that an override asked for; by an old name it counts more than the new one in the file.
+    overridden: key paths of overrides; by an old name it counts more than the new one in the file.
     """
     warned: list[CaseProblem] = []
     refused: list[CaseProblem] = []
@@ -46,7 +46,7 @@ def rename(data: dict[str, Any], overridden: Collection[KeyPath] = ()) -> tuple[
 
 
 def retired(words: Sequence[str]) -> RetiredKey | None:
-    """The retired key that a user means, by its path or by the key alone."""
+    """Find the retired key that a user means, by its path or by the key alone."""
     for old in RETIRED:
         table, *_, key = old.path.split(".") if "." in old.path else ("", old.path)
         if words[-1:] == [key] and (len(words) == 1 or words[0] == table):
@@ -55,7 +55,7 @@ def retired(words: Sequence[str]) -> RetiredKey | None:
 
 
 def message(old: RetiredKey, twice: bool = False) -> str:
-    """What to say about a retired key; twice: its new name stands beside it."""
+    """Return the message for a retired key; twice: its new name is given beside it."""
     if twice:
         return f"not allowed beside '{old.name}', which is its name since version {old.version}"
     now = f"its name is '{old.name}'" if old.name else old.instead or "nothing takes its place"
@@ -63,7 +63,7 @@ def message(old: RetiredKey, twice: bool = False) -> str:
 
 
 def tables_at(node: Any, steps: Sequence[str], path: KeyPath = ()) -> Iterator[tuple[KeyPath, dict[str, Any]]]:
-    """All tables at a path without numbers, with their key paths; "NAME" stands for every name."""
+    """Find all tables at a path without indices, with their key paths; "NAME" stands for every name."""
     if isinstance(node, list):
         for i, item in enumerate(node):
             yield from tables_at(item, steps, (*path, i))

@@ -1,4 +1,4 @@
-"""Scanner of TOML text: its plain data, what in it no key can take, and line and column of every key and value."""
+"""Scan TOML text: its plain data, impossible values, and line and column of every key and value."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SCALAR = re.compile(r"[^,\]}\n#]*")
 
 
 def parsed(text: str) -> dict[str, Any]:
-    """TOML as plain data. Raises tomli.TOMLDecodeError, for lists in lists without end and endless digits too."""
+    """Parse TOML to plain data. Raises tomli.TOMLDecodeError, also for excessive nesting and endless digits."""
     try:
         return tomli.loads(text)
     except RecursionError:
@@ -38,7 +38,7 @@ def parsed(text: str) -> dict[str, Any]:
 
 
 def impossible_values(value: Any, path: KeyPath = ()) -> Iterator[CaseProblem]:
-    """What no key of a case takes. inf and nan are left to the keys, which have words for them."""
+    """Report values that no key of a case accepts, such as dates; inf and nan are left to the keys."""
     if isinstance(value, (datetime.date, datetime.time)):
         yield CaseProblem(path, f"{value} is a date; no key takes one")
     elif isinstance(value, (int, float)) and not isinstance(value, bool):
@@ -61,7 +61,7 @@ def impossible_values(value: Any, path: KeyPath = ()) -> Iterator[CaseProblem]:
 
 
 def _unprinted(text: str, name: bool) -> bool:
-    """Whether a terminal would obey a part of a text instead of showing it; a name stands in one line as well."""
+    """Test whether a text contains control characters that a terminal would obey; a name may have no line break."""
     return CONTROLS.search(text) is not None or (name and "\n" in text)
 
 
@@ -77,7 +77,7 @@ class KeyPositions:
         self._scan()
 
     def locate(self, path: KeyPath, key: bool = False) -> tuple[int, int]:
-        """Line and column of the value at `path`, or of its key; if it is missing, of its table."""
+        """Return line and column of the value at `path`, or of its key; where it is missing, of its table."""
         places = self.keys if key else self.values
         for length in range(len(path), 0, -1):
             if path[:length] in places:
@@ -107,13 +107,13 @@ class KeyPositions:
         return self._end(BLANK, at)
 
     def _end(self, pattern: re.Pattern[str], at: int) -> int:
-        """Where what the pattern describes ends; it stands at `at`, because the text is right."""
+        """Return the end of the match of a pattern at a position of text whose syntax is right."""
         match = pattern.match(self.text, at)
         assert match is not None, f"not {pattern.pattern} at {at}"
         return match.end()
 
     def _dotted(self, at: int) -> tuple[list[str], int]:
-        """The parts of a dotted key and where it ends."""
+        """Split a dotted key at a position of the text into its parts; returns them and its end."""
         parts = []
         while True:
             match = KEY_PART.match(self.text, at)
@@ -152,7 +152,7 @@ class KeyPositions:
         return self._value(self._end(EQUALS, end), path)
 
     def _value(self, at: int, path: KeyPath) -> int:
-        """Note the value at `path`, and what is in it; returns where it ends."""
+        """Record the position of the value at `path` and of the values inside it; returns its end."""
         self.values[path] = at
         first = self.text[at]
         if first in "\"'":

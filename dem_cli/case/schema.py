@@ -1,4 +1,4 @@
-"""The tables of a case file, in SI units; degrees only where a key says `_deg`.
+"""Tables of a case file, in SI units; degrees only where a key says `_deg`.
 
 Which structures, joint laws and analyses exist is handed in (`case_model`): this package knows no registry.
 """
@@ -66,19 +66,21 @@ class Material(CaseModel):
 
     @property
     def moduli(self) -> tuple[float, float]:
-        """E and G = E / 2(1 + ν) of blocks that deform in their joints [Pa]; infinite: they do not."""
+        """Young's and shear modulus, E and G = E / 2(1 + ν), of blocks that deform in their joints [Pa]; infinite if
+        rigid.
+        """
         if self.young is None or self.deformation not in (None, "joints"):
             return math.inf, math.inf
         return self.young, self.young / (2.0 * (1.0 + self.poisson))
 
     @property
     def strains(self) -> bool:
-        """Whether its blocks have a strain of their own."""
+        """Tell whether the blocks deform with a uniform or quadratic strain."""
         return self.deformation in ("uniform-strain", "quadratic")
 
     @property
     def bends(self) -> bool:
-        """Whether its blocks bend and bulge as well."""
+        """Tell whether the blocks deform with a quadratic displacement field, which includes bending."""
         return self.deformation == "quadratic"
 
 
@@ -90,7 +92,7 @@ class Interface(CaseModel):
 
 
 class ImposedStrain(Selection):
-    """[[strain]]: a strain that blocks would have if nothing held them: warming, swelling, drying; several add up."""
+    """[[strain]]: imposed strain of blocks, free of stress: warming, swelling, drying; several add up."""
 
     value: Annotated[float, Field(ge=-0.05, le=0.05)] = Field(
         description="strain in all directions, positive: longer; of warming: coefficient of expansion × degrees, of "
@@ -100,7 +102,7 @@ class ImposedStrain(Selection):
 
 
 class Settlement(Selection):
-    """[[settlement]]: supports that are moved; those of a structure, a pattern or a group as one rigid body."""
+    """[[settlement]]: imposed movement of supports; those of a structure, a pattern or a group as one rigid body."""
 
     displacement: Vector = Field(
         default=(0.0, 0.0), description="how far the centroid moves [m]", examples=[[0.01, -0.02]]
@@ -114,7 +116,7 @@ class Settlement(Selection):
 
     @property
     def rotation(self) -> tuple[float, ...]:
-        """Turn about the centroid [rad]: counter-clockwise in the plane, in space axis times angle."""
+        """Rotation about the centroid [rad]: counter-clockwise in the plane, in space axis times angle."""
         degrees = self.rotation_deg if isinstance(self.rotation_deg, tuple) else (self.rotation_deg,)
         return tuple(math.radians(angle) for angle in degrees)
 
@@ -241,12 +243,12 @@ class Monitor(Selection):
 
     @property
     def of_what_holds(self) -> bool:
-        """Whether it follows what fixed or restrained blocks are held by."""
+        """Tell whether the monitor records a reaction of fixed or restrained blocks."""
         return self.quantity in REACTIONS
 
     @property
     def place(self) -> str:
-        """Where it is, in words."""
+        """Location of the monitor in words: block, joint, cut or tie."""
         if self.between is not None:
             return " | ".join(self.between)
         if self.cut is not None:
@@ -259,7 +261,7 @@ class Monitor(Selection):
 
 
 def _point(point: tuple[float, ...]) -> str:
-    """(0.5, 2)"""
+    """Format a point: (0.5, 2)."""
     return f"({', '.join(f'{x:g}' for x in point)})"
 
 
@@ -275,7 +277,7 @@ class Output(CaseModel):
 
     @property
     def snapshots(self) -> int:
-        """Snapshots kept where the analysis does not know better."""
+        """Number of snapshots kept where the analysis sets no other default."""
         return 20 if self.frames is None else self.frames
 
 
@@ -286,7 +288,7 @@ class ProgramStamp(CaseModel):
 
 
 class Case(CaseModel):
-    """A whole case file. `case_model` narrows structure, joints and analysis to the kinds that exist."""
+    """Complete case file. `case_model` narrows structure, joints and analysis to the kinds that exist."""
 
     title: str = Field(
         default="", description="one line; default: the name of the file", examples=["A wall of 21 blocks"]
@@ -333,13 +335,13 @@ class Case(CaseModel):
     sweep: Sweep | None = Field(default=None, description="the runs of `dem sweep`; other commands ignore it")
 
     def __eq__(self, other: object) -> bool:
-        """Whether they say the same, whichever kinds their classes know (`case_model`)."""
+        """Test whether two cases have the same values, whichever kinds their classes know (`case_model`)."""
         return isinstance(other, Case) and dict(self) == dict(other)
 
     @model_validator(mode="before")
     @classmethod
     def _not_without_end(cls, tables: Any) -> Any:
-        """Before any of them is looked at."""
+        """Refuse too many tables before any of them is validated."""
         for key, several in tables.items() if isinstance(tables, dict) else ():
             if key != "block" and isinstance(several, (list, tuple, dict)) and len(several) > MOST_TABLES:
                 raise KeyProblem(f"{len(several):,} tables are too many; at most {MOST_TABLES:,}", key)
@@ -353,7 +355,7 @@ class Case(CaseModel):
 
     @model_validator(mode="after")
     def _on_the_ground(self) -> Case:
-        """With a [ground], structures have no bases but those that they ask for."""
+        """Remove the bases of structures that stand on a [ground], except where a structure has its own."""
         if self.ground is None:
             return self
         for i, table in enumerate(self.structure):
@@ -376,11 +378,11 @@ class Case(CaseModel):
 
     @property
     def default_joint(self) -> str:
-        """The joint between materials that no [[interface]] names."""
+        """Name of the joint between materials that no [[interface]] names."""
         return next(iter(self.joints))
 
     def joint_between(self, material_a: str, material_b: str) -> str:
-        """Name of the joint between two materials, in any order; of several interfaces the last counts."""
+        """Return the name of the joint between two materials, in any order; of several interfaces the last counts."""
         pair = {material_a, material_b}
         named = [interface.joint for interface in self.interface if set(interface.between) == pair]
         return named[-1] if named else self.default_joint
@@ -395,11 +397,11 @@ def case_model(
     links: Mapping[str, type[CaseModel]] | None = None,
     left_out: Collection[str] = (),
 ) -> type[Case]:
-    """The class of case files in which these kinds exist: kind -> class of its parameters.
+    """Create the class of case files with these structure, joint and analysis kinds: kind -> class of its parameters.
 
     tables: classes of [calibration], [damping] and [[initial]] by key; one that is left out does not exist.
     motions: kinds of the [motion] tables; links: tables of links, and those by name that they name, by their key.
-    left_out: keys that the files of this class do not have, so that nobody needs to know what they may say.
+    left_out: keys that the files of this class do not have, so that their tables need not be known.
     """
     structure = one_of(structures, "kind") if structures else Any
     joint = one_of(laws, "law", default=DEFAULT_LAW)
@@ -428,7 +430,7 @@ def case_model(
 
 
 def one_of(kinds: Mapping[str, type[CaseModel]], key: str, default: str | None = None) -> Any:
-    """A table whose `key` says which of the `kinds` it is; without the key it is the `default`."""
+    """Return the type of a table whose `key` selects one of the `kinds`; without the key it is the `default`."""
     for kind, parameters in kinds.items():
         field = parameters.model_fields.get(key)
         if field is None or get_args(field.annotation) != (kind,):
@@ -441,5 +443,5 @@ def one_of(kinds: Mapping[str, type[CaseModel]], key: str, default: str | None =
 
 
 def with_default(key: str, value: str | None) -> Callable[[Any], Any]:
-    """A function that adds `key = value` to a table without that key."""
+    """Return a function that adds `key = value` to a table without that key."""
     return lambda table: {key: value, **table} if isinstance(table, dict) and key not in table else table

@@ -16,7 +16,7 @@ ONE_COURSE_OR_MORE = "with structure: a course of it, from 1 at the foot, or fro
 
 
 class Selection(CaseModel):
-    """What every table accepts that is about blocks. `selected` is the name under which models know them."""
+    """Keys of every table that selects blocks; `selected` is the name under which models know the selection."""
 
     needs_blocks: ClassVar[bool] = True  # one of the keys must be given
 
@@ -42,12 +42,12 @@ class Selection(CaseModel):
 
     @property
     def selected(self) -> str | None:
-        """What the blocks are called in messages and by models; None: nothing is selected."""
+        """Name of the selected blocks in messages and models; None: nothing is selected."""
         return self.block if self.block is not None else structure_words(self.structure, self.course)
 
     @property
     def said(self) -> str:
-        """The same as messages have it."""
+        """Name of the selected blocks in messages, with quotes."""
         if self.structure is None:
             return show(self.block)
         return structure_words(show(self.structure), self.course) or ""
@@ -79,7 +79,7 @@ GroupMembers = Annotated[tuple[Name | GroupMember, ...], Field(min_length=1)]
 
 
 def check_courses(structure: str | None, course: Courses) -> None:
-    """Raises KeyProblem for courses of no structure, or from a higher to a lower one."""
+    """Raise KeyProblem for courses given without a structure, or from a higher to a lower one."""
     if course is not None and structure is None:
         raise KeyProblem("not used without structure", "course")
     if isinstance(course, tuple) and course[0] > course[1]:
@@ -87,7 +87,7 @@ def check_courses(structure: str | None, course: Courses) -> None:
 
 
 def structure_words(structure: str | None, course: Courses) -> str | None:
-    """A structure, or courses of it, in words."""
+    """Return the name in words of a structure, or of courses of it."""
     if structure is None:
         return None
     if course is None:
@@ -97,5 +97,5 @@ def structure_words(structure: str | None, course: Courses) -> str | None:
 
 
 def is_pattern(name: str) -> bool:
-    """Whether a name stands for all that are like it."""
+    """Test whether a name is a pattern with wildcards."""
     return any(sign in name for sign in PATTERN_SIGNS)

@@ -1,4 +1,4 @@
-"""[sweep]: which keys of a case take which values in the runs of `dem sweep`."""
+"""Table [sweep]: the keys of a case and their values in the runs of `dem sweep`."""
 
 from __future__ import annotations
 

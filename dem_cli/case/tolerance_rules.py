@@ -34,7 +34,7 @@ RULES = {
 
 
 def allowance(kind: str, quantity: str, bounds: tuple[float, ...], scatter: float | None, resolution: Any) -> float:
-    """Largest difference that passes, in the unit of the quantity.
+    """Return the default absolute tolerance of a reference value, in the unit of the quantity.
 
     bounds: the value, or both ends of an interval. scatter: a standard deviation, of experiments. resolution: that of
     the analysis, a share of the answer; None where it has none.
@@ -50,7 +50,7 @@ def allowance(kind: str, quantity: str, bounds: tuple[float, ...], scatter: floa
 
 
 def _share(quantity: str, resolution: Any) -> float:
-    """Of an exact value."""
+    """Return the relative tolerance of an exact reference value."""
     if quantity == "failure_load" and resolution is not None:
         return OF_A_LOAD * float(resolution)
     if quantity in FACTORS and resolution is not None:

@@ -1,4 +1,4 @@
-"""Variation of one number of a case, named by a key path such as structure.0.ring."""
+"""Vary one number of a case, named by a key path such as structure.0.ring."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ NO_STRUCTURE = (
 
 
 def parts_of(text: str) -> list[str]:
-    """structure.0.ring -> ["structure", "0", "ring"]."""
+    """Split a key path into its parts: structure.0.ring -> ["structure", "0", "ring"]."""
     return list(map(str, key_path(text)))
 
 
 def value_at(case: Case, text: str) -> float | int:
-    """The number that a key has now. Raises CaseError, at analysis.vary, where there is none."""
+    """Return the number at a key path of a case. Raises CaseError, at analysis.vary, where there is none."""
     if not parts_of(text):
         raise _wrong(f"'{text}' is not a key path, such as structure.0.ring")
     node: Any = case
@@ -45,7 +45,7 @@ def value_at(case: Case, text: str) -> float | int:
 
 
 def with_value(case: Case, text: str, value: float) -> Case:
-    """The case with another value of a number, validated. Raises CaseError, at analysis.between."""
+    """Return a validated case with another value of one number. Raises CaseError, at analysis.between."""
     data = case.model_dump(exclude_unset=True)
     _put(data, case.model_dump(), parts_of(text), value)
     try:
@@ -55,14 +55,14 @@ def with_value(case: Case, text: str, value: float) -> Case:
 
 
 def impossible_table(what: str, path: KeyPath, declared: type[BaseModel], error: ValidationError) -> CaseError:
-    """The same of a table, at a key path, in which a value is not allowed."""
+    """Create the error, at analysis.between, for a value with which a table becomes invalid."""
     found = {str(item["loc"][0]): item["input"] for item in error.errors(include_url=False) if item["loc"]}
     listed = problems_from(error, declared, found)
     return impossible(what, [replace(problem, path=(*path, *problem.path)) for problem in listed])
 
 
 def impossible(what: str, found: Sequence[CaseProblem]) -> CaseError:
-    """The error, at analysis.between, of a value with which the case makes no sense."""
+    """Create the error, at analysis.between, for a value with which the case becomes invalid."""
     problems = [problem for problem in found if problem.path != WHERE]
     return CaseError([CaseProblem(("analysis", "between"), f"{what} is not possible: {plain((problems or found)[0])}")])
 
@@ -82,7 +82,7 @@ def _put(data: dict[str, Any], whole: Any, path: list[str], value: float) -> Non
 
 
 def _missing(node: Any, part: str, depth: int, text: str) -> str:
-    """What there is instead of a part of the path."""
+    """Describe the parts that exist where a part of a key path does not."""
     around = ".".join(parts_of(text)[:depth]) or "a case"
     if isinstance(node, tuple):
         return f"{around} has the numbers 0 to {len(node) - 1}" if node else f"there is no [[{around}]]"

@@ -22,11 +22,11 @@ class VectorLength(NamedTuple):
     spatial: int
 
     def in_dimension(self, dimension: int) -> int:
-        """Numbers of a vector in so many dimensions."""
+        """Number of components of a vector in the given dimension."""
         return {2: self.planar, 3: self.spatial}[dimension]
 
     def check(self, value: Any, handler: Any, info: ValidationInfo) -> Any:
-        """Raises ValueError, with what is allowed, for what is no list of so many."""
+        """Validate the number of components of a vector. Raises ValueError with what is allowed."""
         dimension = (info.context or {}).get("dimension")
         wanted = self if dimension is None else (self.in_dimension(dimension),)
         if _length(value) not in wanted:
@@ -34,24 +34,24 @@ class VectorLength(NamedTuple):
         return handler(value)
 
     def _here(self, dimension: int | None, value: Any) -> str:
-        """What is allowed in a case of so many dimensions."""
+        """Return the allowed length of a vector in words for a case of this dimension."""
         if dimension == 3:
             return f"{_list_of(self.spatial)} in a case with {OTHER_DIMENSION}"
         of_space = _length(value) == self.spatial
         return _list_of(self.planar) + (f" in a case without {OTHER_DIMENSION}" if of_space else "")
 
     def allowed(self, many: bool = False) -> str:
-        """What is allowed in a case of any dimension."""
+        """Return the allowed length of a vector in words for both dimensions."""
         spatial = _list_of(self.spatial) if self.planar == 1 else self.spatial
         return f"{_list_of(self.planar, many)} (3D: {spatial})"
 
     def padded(self, value: float | tuple[float, ...]) -> tuple[float, ...]:
-        """A default that is given for the plane, in space."""
+        """Extend a default vector of the plane with zeros to three dimensions."""
         planar = value if isinstance(value, tuple) else (value,)
         return (*planar, *(0.0,) * (self.spatial - self.planar))
 
     def is_planar(self, value: Any) -> bool:
-        """Whether a value is one of the plane."""
+        """Test whether a value has the length of a vector in the plane."""
         return _length(value) == self.planar
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
@@ -65,14 +65,14 @@ class VectorLength(NamedTuple):
 
 
 def _length(value: Any) -> int:
-    """Numbers of a value: of a list so many, of a number 1, of anything else 0."""
+    """Return the number of components: of a list its length, of a number 1, of anything else 0."""
     if isinstance(value, tuple):
         return len(value) if len(value) > 1 else 0
     return int(isinstance(value, (int, float)) and not isinstance(value, bool))
 
 
 def _list_of(length: int, many: bool = False) -> str:
-    """So many numbers in words."""
+    """Describe a list of so many numbers in words."""
     if length == 1:
         return "numbers" if many else "a number"
     return f"{'lists' if many else 'a list'} of {length} numbers"

@@ -1,4 +1,4 @@
-"""Words of messages about a case: what may stand somewhere, the value found, the nearest name."""
+"""Phrases of messages about a case: what is allowed, the value found, the nearest name."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ LIMIT_SIGNS = {limits.Gt: ("gt", ">"), limits.Ge: ("ge", "≥"), limits.Lt: ("lt
 
 
 class DeclaredType(NamedTuple):
-    """A type as declared, without Annotated and None: the type and the limits on its value."""
+    """Declared type of a key without Annotated and None, with the limits on its value."""
 
     type: Any
     limits: tuple[Any, ...] = ()
 
     @property
     def choices(self) -> tuple[DeclaredType, ...]:
-        """The members of a union; of anything else, and of what has words of its own, itself."""
+        """Members of a union type; any other type alone."""
         if get_origin(self.type) not in (Union, UnionType) or any(hasattr(limit, "allowed") for limit in self.limits):
             return (self,)
         return tuple(choice for member in get_args(self.type) for choice in kind_of(member).choices)
 
 
 def kind_of(declared: Any, metadata: Iterable[Any] = ()) -> DeclaredType:
-    """Take Annotated and None off a declared type, keeping the limits."""
+    """Remove Annotated and None from a declared type, keeping the limits."""
     found = list(metadata)
     while True:
         arguments = get_args(declared)
@@ -50,18 +50,18 @@ def kind_of(declared: Any, metadata: Iterable[Any] = ()) -> DeclaredType:
 
 
 def is_table(declared: Any) -> bool:
-    """Whether a declared type is a table of the case file."""
+    """Test whether a declared type is a table of the case file."""
     return isinstance(declared, type) and issubclass(declared, BaseModel)
 
 
 def allowed(kinds: Iterable[DeclaredType], many: bool = False) -> str:
-    """What may stand there: `a number > 0 or 'auto'`."""
+    """Describe the allowed types and limits in words: `a number > 0 or 'auto'`."""
     choices = [choice for kind in kinds for choice in kind.choices]
     return " or ".join(dict.fromkeys(allowed_one(choice, many) for choice in choices))
 
 
 def allowed_one(kind: DeclaredType, many: bool = False) -> str:
-    """The words for one kind; `many` for the plural."""
+    """Describe one allowed type in words; `many` for the plural."""
     declared, arguments, origin = kind.type, get_args(kind.type), get_origin(kind.type)
     pairs = [(limit, sign) for sign in LIMIT_SIGNS for limit in kind.limits if isinstance(limit, sign)]
     bounds = [f"{LIMIT_SIGNS[sign][1]} {show(getattr(limit, LIMIT_SIGNS[sign][0]))}" for limit, sign in pairs]
@@ -89,13 +89,13 @@ def allowed_one(kind: DeclaredType, many: bool = False) -> str:
 
 
 def literals(kinds: Iterable[DeclaredType]) -> list[str]:
-    """The names that may stand there."""
+    """List the literal names that the types allow."""
     choices = [choice.type for kind in kinds for choice in kind.choices]
     return [name for choice in choices if get_origin(choice) is Literal for name in get_args(choice)]
 
 
 def not_allowed(value: Any, kinds: Iterable[DeclaredType]) -> str:
-    """`-3 is not allowed; must be an integer ≥ 1`, with a hint for a name nearly right."""
+    """Return the message for a value that is not allowed, with a hint for a nearly right name."""
     kinds = tuple(kinds)
     hint = nearest(value, literals(kinds)) if isinstance(value, str) else ""
     must = f"must be {allowed(kinds)}"
@@ -103,20 +103,20 @@ def not_allowed(value: Any, kinds: Iterable[DeclaredType]) -> str:
 
 
 def unknown_name(what: str, value: Any, names: Sequence[str]) -> str:
-    """`unknown law 'colomb', did you mean 'coulomb'? (allowed: 'coulomb')`"""
+    """Return the message for an unknown name, with the nearest and all allowed ones."""
     hint = nearest(value, names)
     return f"unknown {what} {show(value)}{hint and ', ' + hint} (allowed: {listing(names)})"
 
 
 def nearest(value: Any, names: Iterable[Any]) -> str:
-    """`did you mean 'x'?`, or nothing when no name is near; a number that was meant has no quotes."""
+    """Suggest the nearest name, `did you mean 'x'?`; empty where none is near."""
     known = {str(name): name for name in names}
     close = difflib.get_close_matches(str(value), known, 1, 0.6)
     return f"did you mean {show(known[close[0]])}?" if close else ""
 
 
 def listing(names: Iterable[Any]) -> str:
-    """Names to choose from; of very many the first few."""
+    """List names to choose from; of very many only the first few."""
     words = [show(name) for name in names]
     if len(words) > MOST_NAMES:
         return f"{', '.join(words[:6])}, ... {len(words)} in all"
@@ -124,6 +124,6 @@ def listing(names: Iterable[Any]) -> str:
 
 
 def either(names: Sequence[Any]) -> str:
-    """'a', 'b' or 'c'"""
+    """Join names with commas and "or": 'a', 'b' or 'c'."""
     words = [show(name) for name in names]
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"

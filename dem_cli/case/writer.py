@@ -1,4 +1,4 @@
-"""A case as TOML text: defaults filled in. Reading it and writing it again gives the same bytes."""
+"""Write a case as TOML text with defaults filled in; reading and writing it again gives the same bytes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SEVERAL = (
 
 
 def case_text(case: Case) -> str:
-    """TOML text of a case. A sweep is left out: this is one case of it."""
+    """Return the TOML text of a case without its sweep."""
     data: dict[str, Any] = {}
     for key in type(case).model_fields:
         value = getattr(case, key)
@@ -46,24 +46,24 @@ def case_text(case: Case) -> str:
 
 
 def _plain(item: Any) -> Any:
-    """A table, or a list of tables and names, as plain values."""
+    """Convert a table, or a list of tables and names, to plain values."""
     if isinstance(item, tuple):
         return [_plain(one) for one in item]
     return effective(item) if isinstance(item, CaseModel) else item
 
 
 def text_of_tables(tables: Mapping[str, Any]) -> str:
-    """TOML text of a case given as tables, as a case file would have them. Raises UsageError."""
+    """Return the TOML text of a case given as tables, as a case file would have them. Raises UsageError."""
     return on_one_line(tomli_w.dumps(plain_value(tables, "case")))
 
 
 def on_one_line(text: str) -> str:
-    """Lists of numbers on one line each; tomli-w gives every number its own."""
+    """Put each list of numbers on one line; tomli-w gives every number its own."""
     return NUMBER_LISTS.sub(lambda lines: f"[{', '.join(lines[1].replace(',', '').split())}]", text)
 
 
 def effective(table: CaseModel) -> dict[str, Any]:
-    """All keys of a table, but for defaults that may not be written out (`bond` beside `offset`)."""
+    """Return all keys of a table except defaults that may not be written out (`bond` beside `offset`)."""
     data = table.model_dump(exclude_none=True)
     data = {key: data[key] for key in (*LEADING_KEYS, *data) if key in data}
     if accepted(table, data):
@@ -76,7 +76,7 @@ def effective(table: CaseModel) -> dict[str, Any]:
 
 
 def accepted(table: CaseModel, data: dict[str, Any]) -> bool:
-    """Whether `data` is valid as a table of that kind, and means the same."""
+    """Test whether `data` is valid as a table of that kind and has the same values."""
     try:
         read = type(table).model_validate(data)
     except ValidationError:

@@ -1,1 +1,1 @@
-"""Masonry: structures that are generated, drawn or imported, and how they become a model."""
+"""Generate, draw and import masonry structures, and assemble them to a model."""

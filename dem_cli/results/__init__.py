@@ -1,1 +1,1 @@
-"""Results of a run: files, pictures, movies, pages."""
+"""Write, draw and report the results of a run: files, pictures, movies, pages."""

@@ -1,1 +1,1 @@
-"""Many runs: variants of a structure, records, capacities and their distribution."""
+"""Ensembles of runs: perturbed structures, records, collapse capacities and their distribution."""

@@ -1,4 +1,4 @@
-"""Many runs at once, over threads: the compiled loops let go of the interpreter. Finished runs go to a journal."""
+"""Parallel runs over threads, since the compiled loops release the interpreter; finished runs go to a journal."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class ShakingTrial(NamedTuple):
-    """A run to be done: which structure, which record, how strong."""
+    """Run to be done: structure, record and intensity."""
 
     structure: int
     record: int
@@ -26,17 +26,17 @@ class ShakingTrial(NamedTuple):
 
 
 class RunStore(Protocol):
-    """Who keeps finished runs; what it has is not done again."""
+    """Store of finished runs, which are not repeated."""
 
     def known(self) -> Mapping[tuple, tuple]:
-        """Runs that were finished before: ShakingTrial and ShakenRunResult as plain tuples."""
+        """Return finished runs: ShakingTrial and ShakenRunResult as plain tuples."""
 
     def add(self, key: tuple, values: tuple) -> None:
-        """Keep a run; a kill does not lose it."""
+        """Store a run so that it survives a killed process."""
 
 
 class Batch(NamedTuple):
-    """How many runs are done."""
+    """Threads and journal of many runs."""
 
     threads: int = 1
     journal: RunStore | None = None
@@ -44,11 +44,11 @@ class Batch(NamedTuple):
 
 Answer = Callable[[ShakingTrial], ShakenRunResult]  # does a run, or looks it up
 Task = Callable[[Answer], None]  # asks for runs, one after the other
-Say = Callable[[int], None]  # is told how many runs are done
+Say = Callable[[int], None]  # called with the number of finished runs
 
 
 class Batcher:
-    """Does runs of rested structures under scaled records; the results do not depend on the number of threads.
+    """Executor of runs of rested structures under scaled records; results do not depend on the number of threads.
 
     done   all results so far
     fresh  how many of them were computed here
@@ -70,7 +70,7 @@ class Batcher:
         self._lock, self._cancelled = threading.Lock(), threading.Event()
 
     def answer(self, trial: ShakingTrial) -> ShakenRunResult:
-        """The result of a run."""
+        """Return the result of a run, computed or from the journal."""
         found = self.done.get(trial)
         if found is not None:
             return found
@@ -83,7 +83,7 @@ class Batcher:
         return run
 
     def work(self, tasks: Sequence[Task], say: Say) -> None:
-        """All tasks. Raises KeyboardInterrupt where one came; what is finished is in the journal."""
+        """Do all tasks. Raises KeyboardInterrupt where one came; what is finished is in the journal."""
         with ThreadPoolExecutor(max(1, min(self.batch.threads, len(tasks)))) as pool:
             try:
                 pending = {pool.submit(task, self.answer) for task in tasks}
@@ -100,7 +100,7 @@ class Batcher:
 
 
 def each(trials: Sequence[ShakingTrial]) -> Iterator[Task]:
-    """A task per run."""
+    """Yield a task per run."""
     return (partial(_ask, trial) for trial in trials)
 
 

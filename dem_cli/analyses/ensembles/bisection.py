@@ -1,4 +1,4 @@
-"""Bisection between what stands and what fails: values of one number, one after the other, until two are close."""
+"""Bisection between standing and failing values of one number, until the two are close."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from dem_cli.core.engine.static_settings import SafetySettings
 
 
 class Scale(NamedTuple):
-    """The values that may be tried, and what lies in the middle between two of them."""
+    """Range of the values that may be tried, and the middle between two of them."""
 
     low: float
     high: float
@@ -20,19 +20,19 @@ class Scale(NamedTuple):
     nothing: float = DEFAULT.safety.nothing  # of the range, below which a relative resolution makes no sense
 
     def middle(self, a: float, b: float) -> float:
-        """Between two values."""
+        """Return the middle between two values, geometric for ratios."""
         if self.whole:
             return float((int(a) + int(b)) // 2)
         return math.sqrt(a * b) if self.ratio else 0.5 * (a + b)
 
     def close(self, a: float, b: float, resolution: float) -> bool:
-        """Whether two values are as near as can be told, or as is asked for."""
+        """Test whether two values are within the resolution of each other."""
         if self.whole:
             return abs(a - b) <= 1.0
         return abs(a - b) <= resolution * max(abs(a), abs(b), self.nothing * (self.high - self.low))
 
     def towards(self, start: float, end: float, step: float) -> float:
-        """From `start` by `step` (relative to it) to `end`, which is not passed."""
+        """Step from `start` by a relative `step` towards `end`, which is not passed."""
         sign = 1.0 if end > start else -1.0
         value = start * (1.0 + step) ** sign if self.ratio else start + sign * step * max(abs(start), 1e-9 * abs(end))
         if self.whole:
@@ -40,7 +40,7 @@ class Scale(NamedTuple):
         return min(value, end) if sign > 0 else max(value, end)
 
     def parts(self, n: int) -> list[float]:
-        """n equal parts of the whole range, n + 1 values; whole numbers come once."""
+        """Divide the whole range into n equal parts, n + 1 values; whole numbers come once."""
         share = [i / n for i in range(1, n)]
         if self.ratio:
             inner = [self.low * (self.high / self.low) ** s for s in share]
@@ -51,7 +51,7 @@ class Scale(NamedTuple):
 
 
 class Ends(NamedTuple):
-    """Two values next to each other; None: nothing of that kind was found."""
+    """Bracket of the change from standing to failing; None: not found."""
 
     stands: float | None
     fails: float | None
@@ -69,7 +69,7 @@ def search(
     start: float | None,
     settings: SafetySettings = DEFAULT.safety,
 ) -> Ends:
-    """The change from standing to failure next to the end that stands, its two values at most `resolution` apart.
+    """Search the change from standing to failure by bisection, until its two values are `resolution` apart.
 
     guess: values next to which the change should be; scan: equal parts that are tried first; start: from where to go
     outwards, without either. A change that is nowhere leaves one of the two None.
@@ -92,7 +92,7 @@ def search(
 
 
 def first_change(tried: list[tuple[float, bool]]) -> Ends:
-    """The first change, seen from the end that stands (where both do, or none, from the lower one).
+    """Return the first change, seen from the end that stands (where both do, or none, from the lower one).
 
     tried: values, increasing, and whether each stands.
     """
@@ -105,13 +105,13 @@ def first_change(tried: list[tuple[float, bool]]) -> Ends:
 
 
 def changes(tried: dict[float, bool]) -> int:
-    """How often neighbours among the values tried differ."""
+    """Count the changes between neighbours among the values tried."""
     answers = [tried[value] for value in sorted(tried)]
     return sum(a != b for a, b in zip(answers, answers[1:]))
 
 
 def _around(stands: Stands, scale: Scale, resolution: float, guess: Ends, settings: SafetySettings) -> Ends:
-    """From a guess to both sides, by growing steps."""
+    """Search from a guess to both sides, by growing steps."""
     assert guess.stands is not None
     assert guess.fails is not None
     up = guess.fails > guess.stands
@@ -133,7 +133,7 @@ def _around(stands: Stands, scale: Scale, resolution: float, guess: Ends, settin
 
 
 def _steps(scale: Scale, start: float, end: float, resolution: float, settings: SafetySettings) -> Iterator[float]:
-    """Values that leave `start` faster and faster, up to `end`; of whole numbers, `start` first."""
+    """Yield values that leave `start` with growing steps, up to `end`; of whole numbers, `start` first."""
     step, value = settings.first * resolution, start
     if scale.whole:
         yield value
@@ -144,7 +144,7 @@ def _steps(scale: Scale, start: float, end: float, resolution: float, settings: 
 
 
 def _outwards(stands: Stands, scale: Scale, start: float, settings: SafetySettings) -> Ends:
-    """From `start`, towards higher values where it stands there and lower ones where it does not."""
+    """Search from `start` towards higher values where it stands there, towards lower ones where it fails."""
     value, stride = start, settings.stride
     first = stands(value)
     end = scale.high if first else scale.low

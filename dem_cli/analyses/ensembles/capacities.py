@@ -1,4 +1,4 @@
-"""Collapse capacities: what runs at several intensities say about each record, and about all records."""
+"""Collapse capacities of records from runs at several intensities."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from dem_cli.core.engine.settings import DEFAULT
 
 
 class Bounds(NamedTuple):
-    """A capacity lies between these intensities: stood at the one, fell at the other."""
+    """Bounds of a collapse capacity: the intensity survived and the one that caused collapse."""
 
     lower: float  # 0: fell at the lowest that was tried
     upper: float  # infinite: never fell
@@ -28,7 +28,7 @@ Outcomes = dict[float, bool]  # collapsed at an intensity, ascending; without ru
 
 
 def outcomes(done: Mapping[ShakingTrial, ShakenRunResult], structure: int, record: int) -> Outcomes:
-    """All runs of one structure under one record."""
+    """Collect all runs of one structure under one record."""
     found = {
         trial.intensity: run.collapsed
         for trial, run in done.items()
@@ -38,7 +38,7 @@ def outcomes(done: Mapping[ShakingTrial, ShakenRunResult], structure: int, recor
 
 
 def bounds_of(found: Outcomes) -> Bounds | None:
-    """The lowest intensity at which it fell, and the next lower one at which it was tried; None: never tried."""
+    """Return the lowest intensity that caused collapse, and the next lower one tried; None: never tried."""
     if not found:
         return None
     upper = min((a for a, fell in found.items() if fell), default=math.inf)
@@ -46,13 +46,13 @@ def bounds_of(found: Outcomes) -> Bounds | None:
 
 
 def survived_above(found: Outcomes) -> list[float]:
-    """Intensities that it survived although it fell at a lower one."""
+    """Return the intensities survived above one that caused collapse."""
     lowest = min((a for a, fell in found.items() if fell), default=math.inf)
     return [a for a, fell in found.items() if not fell and a > lowest]
 
 
 def between(bounds: np.ndarray) -> tuple[float, float]:
-    """Intensities between which half of all capacities fall, by their bounds alone; the upper one may be infinite.
+    """Return the bounds of the median collapse intensity without a distribution; the upper one may be infinite.
 
     bounds: (n_records, n_structures, 2). Of an even number the lower and the upper one of the two in the middle count.
     """
@@ -63,7 +63,7 @@ def between(bounds: np.ndarray) -> tuple[float, float]:
 def distribution(
     bounds: np.ndarray, levels: Sequence[float], confidence: float, statistics: StatisticsSettings = DEFAULT.statistics
 ) -> dict[str, Any]:
-    """Keys of the summary: the lognormal fit, its confidence and the curve.
+    """Fit the lognormal distribution with its confidence and fragility curve, as keys of the summary.
 
     bounds: (n_records, n_structures, 2). Of one run for each level nothing is fitted: it is one draw.
     """
@@ -82,14 +82,14 @@ def distribution(
 
 
 def _range(found: Lognormal, levels: Sequence[float], points: int) -> np.ndarray:
-    """Intensities of the curve: all that were tried, and 99 % of the distribution as far as that is near."""
+    """Return the intensities of the curve: all tried, and 99 % of the distribution as far as that is near."""
     low = min(levels[0], max(found.median * math.exp(-2.6 * found.dispersion), 0.5 * levels[0]))
     high = max(levels[-1], min(found.median * math.exp(2.6 * found.dispersion), 1.5 * levels[-1]))
     return np.linspace(low, high, points)
 
 
 def split(bounds: np.ndarray) -> dict[str, float] | None:
-    """Dispersion between records, and within a record between its structures, by analysis of variance of logarithms.
+    """Split the dispersion between records and structures, by analysis of variance of logarithms.
 
     Of records under which every structure stood and fell at some intensity. bounds: (n_records, n_structures, 2).
     None: fewer than two of these, or one structure.

@@ -1,4 +1,4 @@
-"""Case job: a job that knows its case as well, for analyses that read more of it than solvers are asked for."""
+"""Case job: a job with its case, for analyses that read more of it than the solver request."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ if TYPE_CHECKING:
 
 @dataclass(kw_only=True)
 class CaseJob(Job):
-    """One run of a case."""
+    """Run of a case with its clock, budget and warnings."""
 
     LASTING: ClassVar[frozenset[str]] = Job.LASTING | {"case"}
     case: Case
 
     @classmethod
     def of_case(cls, case: Case, model: Model, observer: Observer, settings: Settings = DEFAULT) -> CaseJob:
-        """A job that reports to `observer`."""
+        """Create the job of a case that reports to `observer`."""
         job = Job.start(solver_request(case), model, observer, settings)
         return cls(job.request, model, job.clock, job.monitors, job.budget, settings, case=case)
 
     def with_case(self, case: Case) -> CaseJob:
-        """The same of a changed case, with its warnings, clock and budget shared."""
+        """Return the job with a changed case; warnings, clock and budget are shared."""
         return replace(self, case=case, request=solver_request(case))

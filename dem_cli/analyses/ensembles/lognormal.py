@@ -1,4 +1,4 @@
-"""A lognormal distribution of capacities that are known within bounds only, by maximum likelihood.
+"""Maximum likelihood fit of a lognormal distribution of capacities known within bounds only.
 
 A capacity lies between two intensities: the structure stood at the one and fell at the other. Below the first
 intensity (0, x] and above the last (x, ∞) it is censored. The same estimate as scipy.stats.lognorm.fit with
@@ -19,18 +19,18 @@ from dem_cli.core.engine.settings import DEFAULT
 
 
 class Lognormal(NamedTuple):
-    """median, and dispersion: standard deviation of the logarithm."""
+    """Lognormal distribution of capacities: median, and dispersion as standard deviation of the logarithm."""
 
     median: float
     dispersion: float
 
     def share(self, intensities: np.ndarray) -> np.ndarray:
-        """Share of capacities below intensities."""
+        """Return the share of capacities below intensities."""
         return functions.exp(log_ndtr(functions.log(intensities / self.median) / self.dispersion))
 
 
 def fit(lower: np.ndarray, upper: np.ndarray, narrowest: float = DEFAULT.statistics.narrowest) -> Lognormal | None:
-    """The most likely distribution of capacities between lower (≥ 0) and upper (≤ ∞) bounds, (n,).
+    """Fit the most likely distribution of capacities between lower (≥ 0) and upper (≤ ∞) bounds, (n,).
 
     None where the bounds leave it open: nothing fell, or all fell at once.
     """
@@ -53,7 +53,7 @@ def fit(lower: np.ndarray, upper: np.ndarray, narrowest: float = DEFAULT.statist
 
 
 def log_shares(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """log(Φ(b) − Φ(a)), a < b, of a normal distribution; exact in both tails, not below −700, which is never."""
+    """Compute log(Φ(b) − Φ(a)), a < b, of the normal distribution; exact in both tails, cut off at −700."""
     flip = a > 0.0
     low, high = np.where(flip, -b, a), np.where(flip, -a, b)
     upper = log_ndtr(high)

@@ -1,4 +1,4 @@
-"""Confidence of a lognormal fit of few records: limits of median, dispersion and shares from the whole likelihood.
+"""Confidence limits of a lognormal fit of few records: median, dispersion and shares from the whole likelihood.
 
 The limits are quantiles of the likelihood of the bounds times a prior, Jeffreys's times the dispersion σ, over the mean
 logarithm μ and σ. For capacities that are known closely the prior is 1/σ and the limits are the exact ones of normal
@@ -28,12 +28,12 @@ class Band(NamedTuple):
 
     median: tuple[float, float]
     dispersion: tuple[float, float]
-    low: np.ndarray  # of the share below each intensity asked for, (n,)
+    low: np.ndarray  # of the share below each requested intensity, (n,)
     high: np.ndarray
 
 
 class _Known(NamedTuple):
-    """Logarithms of the bounds of all capacities."""
+    """Logarithms of the bounds of all capacities, for the likelihood."""
 
     pairs: np.ndarray  # that differ, (n_pairs, 2)
     weights: np.ndarray  # how many records have them, (n_pairs,)
@@ -44,7 +44,7 @@ class _Known(NamedTuple):
 
 
 class _Likely(NamedTuple):
-    """Probabilities of a grid, (n, m), of mean logarithms and of their dispersions, (n,)."""
+    """Probabilities on a grid, (n, m), of mean logarithms and of their dispersions, (n,)."""
 
     means: np.ndarray
     dispersions: np.ndarray
@@ -55,7 +55,7 @@ def confidence_band(
     bounds: np.ndarray, at: np.ndarray, confidence: float, levels: tuple[float, float],
     statistics: StatisticsSettings = DEFAULT.statistics,
 ) -> Band | None:  # fmt: skip
-    """Confidence of `fit`: bounds (n_records, n_structures, 2), at (m,) intensities, the lowest and highest level.
+    """Compute the confidence limits of `fit`: bounds (n_records, n_structures, 2), at (m,) intensities.
 
     Structures under one record count as one record together, as they mostly fall together: with much scatter between
     them the limits are wider than need be. None where fewer than two records both stood and fell.
@@ -74,7 +74,7 @@ def confidence_band(
 
 
 def _known(bounds: np.ndarray, levels: tuple[float, float]) -> _Known | None:
-    """Bounds of capacities as the likelihood needs them; None where no capacity has two."""
+    """Prepare the bounds of capacities for the likelihood; None where no capacity has two."""
     logs = functions.log(bounds.reshape(-1, 2))
     pairs, counts = np.unique(logs, axis=0, return_counts=True)
     weights = counts / bounds.shape[1]
@@ -88,7 +88,7 @@ def _known(bounds: np.ndarray, levels: tuple[float, float]) -> _Known | None:
 
 
 def _likely(known: _Known, points: int) -> _Likely:
-    """The grid that holds what is likely, found in three steps: of (μ − middle)/σ, and of log σ."""
+    """Find the grid of likely values in three steps: of (μ − middle)/σ, and of log σ."""
     blur, reach = math.sqrt(known.blur), 10.0 / math.sqrt(known.between)
     finite = known.pairs[np.isfinite(known.pairs)]
     u = np.linspace(-4.0 - reach, 4.0 + reach, points)
@@ -102,13 +102,13 @@ def _likely(known: _Known, points: int) -> _Likely:
 
 
 def _where(values: np.ndarray, weights: np.ndarray, least: float = 1e-5) -> np.ndarray:
-    """The same number of values, over that part of their range which has any weight."""
+    """Narrow a range of values to the part with weight, with the same number of values."""
     heavy = np.flatnonzero(weights > least * weights.max())
     return np.linspace(values[max(heavy[0] - 1, 0)], values[min(heavy[-1] + 1, len(values) - 1)], len(values))
 
 
 def _probabilities(known: _Known, u: np.ndarray, logs: np.ndarray) -> np.ndarray:
-    """Of each log σ and u = (μ − middle)/σ, (n, m), from likelihood, prior and the size of a cell, σ² du dlog σ."""
+    """Compute the probability of each log σ and u = (μ − middle)/σ, (n, m), from likelihood and prior."""
     dispersions = functions.exp(logs)[:, None]
 
     def scores(value: float) -> np.ndarray:
@@ -126,7 +126,7 @@ def _probabilities(known: _Known, u: np.ndarray, logs: np.ndarray) -> np.ndarray
 
 
 def _information(low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Determinant of Fisher's information of a capacity about (μ, σ), times σ⁴: 2 where levels reach far enough.
+    """Compute the determinant of Fisher's information of a capacity about (μ, σ), times σ⁴.
 
     low, high: scores of the lowest and the highest level, beyond which capacities are censored. Moments of the normal
     distribution between them, and the squared rate of the share beyond each over that share.
@@ -145,7 +145,7 @@ def _information(low: np.ndarray, high: np.ndarray) -> np.ndarray:
 
 
 def _quantiles(values: np.ndarray, probabilities: np.ndarray, tails: list[float]) -> np.ndarray:
-    """Values that so much of the probability lies below."""
+    """Return the weighted quantiles of values."""
     order = np.argsort(values, axis=None)
     weights = probabilities.ravel()[order]
     return np.interp(tails, np.cumsum(weights) - 0.5 * weights, values.ravel()[order])

@@ -1,4 +1,4 @@
-"""Search of collapse intensities: the records, how strong they are, and where a bisection looks next."""
+"""Search of collapse intensities: records, their intensity, and the next intensity of a bisection."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class GroundRecord(NamedTuple):
-    """A record of the set: one motion, or the components of one event, which are scaled together."""
+    """Ground motion record: one motion, or the components of one event, which are scaled together."""
 
     name: str
     components: tuple[Motion, ...]
@@ -30,7 +30,7 @@ class GroundRecord(NamedTuple):
 
 
 def records_of(case: Case) -> list[GroundRecord]:
-    """Every record of every [[motion]], those of one event together, in the order of the first of their tables.
+    """Collect every record of every [[motion]], those of one event together, in the order of their first tables.
 
     Raises CaseError where there is none, one that does not move, or an event with suites of different length.
     """
@@ -51,7 +51,7 @@ def records_of(case: Case) -> list[GroundRecord]:
 
 
 def _check_lengths(event: str, parts: Sequence[tuple[int, list[Motion]]]) -> None:
-    """Raises CaseError where tables of an event have different numbers of records."""
+    """Raise CaseError where tables of an event have different numbers of records."""
     first = len(parts[0][1])
     for i, suite in parts[1:]:
         if len(suite) != first:
@@ -60,13 +60,13 @@ def _check_lengths(event: str, parts: Sequence[tuple[int, list[Motion]]]) -> Non
 
 
 def scaled(record: GroundRecord, intensity: float, analysis: FragilityAnalysis) -> list[Motion]:
-    """The components of a record with the peak acceleration of an intensity."""
+    """Scale the components of a record to the peak acceleration of an intensity."""
     factor = intensity * analysis.unit_acceleration / record.peak
     return [motion.scaled(factor) for motion in record.components]
 
 
 def runs_per_record(analysis: FragilityAnalysis) -> int:
-    """How many runs a record takes at most."""
+    """Return the largest number of runs per record."""
     if not analysis.bisects:
         return len(analysis.levels)
     if analysis.intensities is not None:
@@ -76,7 +76,7 @@ def runs_per_record(analysis: FragilityAnalysis) -> int:
 
 
 def bisection(analysis: FragilityAnalysis, structure: int, record: int) -> Task:
-    """A task that finds an intensity survived and a higher one that was not, next to each other."""
+    """Bisect the collapse intensity of a record: a task that asks for one run after the other."""
 
     def falls(answer: Answer, intensity: float) -> bool | None:
         run = answer(ShakingTrial(structure, record, intensity))

@@ -1,4 +1,4 @@
-"""One of many runs: a structure at rest, a motion of the ground, and whether it collapsed. Little Python per run."""
+"""Time history of one structure at rest under one ground motion, for many runs: does it collapse?"""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ if TYPE_CHECKING:
 
 
 class ShakenRunResult(NamedTuple):
-    """Outcome of one structure under one ground motion."""
+    """Result of one structure under one ground motion."""
 
     collapsed: bool | None  # before the time after the motion was over; None: it failed, or still moved then
     time: float | None  # of the collapse [s]
-    how: str  # the block that collapsed and how, that nobody knows whether one will, or why the run failed
+    how: str  # the block that collapsed and how, that the end is not known, or why the run failed
     peaks: tuple[float, ...]  # largest absolute value of each monitor, up to the collapse
     steps: int
     closure: float | None  # energy error over the largest energy
@@ -46,17 +46,17 @@ class ShakenRunResult(NamedTuple):
 
 
 def told_peaks(monitors: Sequence[MonitorRequest], run: ShakenRunResult) -> tuple[float, ...]:
-    """The peaks of a run; nan where they mean nothing."""
+    """Return the peaks of a run; nan where they have no meaning."""
     left_out = without_meaning(monitors, run.impacts)
     return tuple(math.nan if i in left_out else peak for i, peak in enumerate(run.peaks))
 
 
 class RunCancelled(Exception):
-    """Nobody waits for this run any more."""
+    """Exception of a run that is cancelled because its result is no longer needed."""
 
 
 class ProgressOnly(Observer):
-    """An observer of structures that come to rest: nothing of them is told to the results.
+    """Observer of structures that come to rest: only progress is reported, no results.
 
     stages: what keeps their stages; none where many run side by side.
     """
@@ -65,19 +65,19 @@ class ProgressOnly(Observer):
         self.observer, self.stages = observer, stages
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """Hands on where the run stands."""
+        """Forward the progress of the run."""
         self.observer.progress(stage, load, displacement, fraction)
 
 
 class _Stretches:
-    """How far a motion has come."""
+    """Progress of a motion in steps and stretches."""
 
     def __init__(self) -> None:
         self.done = self.looks = 0  # steps, stretches
 
 
 class RestedStructure:
-    """A structure that has come to rest, from which any number of motions start."""
+    """Structure at rest under dead loads, from which any number of motions start."""
 
     def __init__(self, variant: Variant, records: Sequence[Motion], observer: Observer, settings: Settings = DEFAULT):
         self.variant, self.request = variant, solver_request(variant.case)
@@ -97,7 +97,7 @@ class RestedStructure:
         cancelled: Callable[[], bool] = lambda: False,
         told: Callable[[DynamicSimulation, float], None] = lambda sim, share: None,
     ) -> ShakenRunResult:
-        """A copy of the structure under the sum of motions, times the factor of the variant; ends with a collapse.
+        """Shake a copy of the structure with the sum of motions, times the factor of the variant; ends with a collapse.
 
         told: hears of the share of the motion that is over. Raises RunCancelled.
         """
@@ -128,7 +128,7 @@ class RestedStructure:
         cancelled: Callable[[], bool],
         told: Callable[[DynamicSimulation, float], None],
     ) -> Ending:
-        """How it ends, through the motion and the time after it."""
+        """Run the motion and the time after it; returns how it ends."""
         analysis, dt = self.request.shaking, self.step.step
         total, motion = math.ceil((analysis.duration or ground.duration) / dt), _Stretches()
 

@@ -1,4 +1,4 @@
-"""Bound by limit analysis: values from which on no forces within the strength of the joints exist.
+"""Bound of a parameter by limit analysis: values from which on the joints cannot balance the loads.
 
 That is a bound, as friction is associated in it and no bond gives way, and a first guess for the runs that decide.
 """
@@ -28,7 +28,7 @@ Variant = Callable[[float], tuple["Case", "Model"]]  # case and model at a value
 
 
 class Bound(NamedTuple):
-    """Between two values: forces in equilibrium exist at `carried`, and are proved impossible at `impossible`."""
+    """Bound between two values: equilibrium exists at `carried`, and is proved impossible at `impossible`."""
 
     carried: float
     impossible: float
@@ -36,7 +36,7 @@ class Bound(NamedTuple):
     seconds: float
 
     def summary(self) -> dict[str, Any]:
-        """What summary.json says under `limit_analysis`."""
+        """Return the bound as the key `limit_analysis` of the summary."""
         return {
             "carried_at": self.carried,
             "impossible_at": self.impossible,
@@ -46,7 +46,7 @@ class Bound(NamedTuple):
 
 
 def bound(variant: Variant, scale: Scale, resolution: float, settings: Settings = DEFAULT) -> Bound | str:
-    """The change between the ends of `scale`, by bisection; or why there is none to tell."""
+    """Bisect the bound between the ends of `scale`; returns a reason where there is none."""
     begun, programs = time.perf_counter(), 0
 
     def carries(value: float) -> bool | None:
@@ -75,7 +75,7 @@ def bound(variant: Variant, scale: Scale, resolution: float, settings: Settings 
 
 
 def stands(case: Case, model: Model, settings: Settings = DEFAULT) -> bool | None:
-    """Whether limit analysis finds forces that carry dead loads and the constant load of the case; None: not known.
+    """Test by limit analysis whether the joints can carry the dead and constant loads of a case; None: not known.
 
     Raises UsageError where the strength of the law is not held by straight lines.
     """
@@ -83,7 +83,7 @@ def stands(case: Case, model: Model, settings: Settings = DEFAULT) -> bool | Non
 
 
 def stands_where_it_rests(case: Case, sim: Simulation, touch: tuple[float, float], settings: Settings) -> bool | None:
-    """The same for the blocks of a simulation where they are. touch: gaps or overlaps of faces that touch [m].
+    """Test by limit analysis whether the loads are carried in the displaced geometry.
 
     Blocks that have turned touch with corners: faces count up to the smallest gap with which forces are found. Raises
     UsageError as `stands`.
@@ -99,7 +99,7 @@ def stands_where_it_rests(case: Case, sim: Simulation, touch: tuple[float, float
 
 
 def _carries(case: Case, model: Model, moved: Simulation | None, near: float | None, settings: Settings) -> bool | None:
-    """As `stands`, of the start or of the blocks of a simulation with faces that are as near as that."""
+    """Test equilibrium by limit analysis in the initial geometry, or with the faces of a simulation within a gap."""
     from dem_cli.core.limit.analysis import start_structure
     from dem_cli.core.limit.associated import carried
     from dem_cli.core.limit.cone import envelope_of
@@ -118,7 +118,7 @@ def _carries(case: Case, model: Model, moved: Simulation | None, near: float | N
 
 
 def _under_load(structure: LimitStructure, case: Case) -> LimitStructure:
-    """The structure with the constant load among its dead ones; a turned table has less of them."""
+    """Return the structure with the constant load as dead load; a tilted table reduces the weight."""
     load = case.analysis.constant_load
     share = 1.0 / np.sqrt(1.0 + load**2) if case.analysis.pattern == "tilt" else 1.0
     dead = share * (structure.dead + load * structure.live)

@@ -1,4 +1,4 @@
-"""One run of a safety analysis: a structure under constant loads, put on from zero, until it rests or has failed."""
+"""Static run of a safety analysis: constant loads raised from zero until equilibrium or failure."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ WIDEST = 0.1  # of the smallest edge: gaps between blocks that have moved, over 
 
 
 class StaticRunResult(NamedTuple):
-    """Outcome of a structure at one value of what is varied."""
+    """Result of a structure at one value of the varied parameter."""
 
     value: float
     stands: bool | None  # None: neither was proven
@@ -47,7 +47,7 @@ class StaticRunResult(NamedTuple):
     closure: float  # energy error over the largest energy
 
     def summary(self) -> dict[str, Any]:
-        """One line of the table of runs."""
+        """Return one line of the table of runs in the summary."""
         return {
             "value": self.value,
             "stands": self.stands,
@@ -60,7 +60,7 @@ class StaticRunResult(NamedTuple):
 
 
 class StaticRun(NamedTuple):
-    """A run with what it would show."""
+    """Static run with its simulation, rows and frames."""
 
     result: StaticRunResult
     case: Case
@@ -79,7 +79,7 @@ def decide(
     hopeless: bool = False,
     settings: Settings = DEFAULT,
 ) -> StaticRun:
-    """Equilibrium or failure of a case under its constant load.
+    """Decide between equilibrium and failure of a case under its constant load.
 
     hopeless: known to have no equilibrium, so that the first failure will do.
     """
@@ -122,7 +122,7 @@ def _decided(job: CaseJob, sim: Simulation, value: float, hopeless: bool) -> Sta
 
 
 def _loaded(job: CaseJob, sim: Simulation, track: Track, hopeless: bool) -> tuple[Verdict, SavedState, float]:
-    """The verdict, the state before the last load was put on, and the share of the load that is on."""
+    """Apply the constant load; returns the verdict, the state before the last increment, and the applied share."""
     safety = sim.settings.safety
     before = sim.save()
     verdict = _stable(job, sim, stand(sim, job.budget))
@@ -151,14 +151,14 @@ def _loaded(job: CaseJob, sim: Simulation, track: Track, hopeless: bool) -> tupl
 
 
 def _stable(job: CaseJob, sim: Simulation, verdict: Verdict) -> Verdict:
-    """The verdict, a failure where it is an equilibrium that buckles."""
+    """Turn the verdict of an equilibrium that buckles into a failure."""
     if verdict.state == "equilibrium" and buckles(sim, job.budget) is not None:
         return Verdict("failure", verdict.unbalanced, buckles=True)
     return verdict
 
 
 def _next_to_failure(job: CaseJob, sim: Simulation, load: float, elastic: float) -> tuple[Verdict, SavedState] | None:
-    """Verdict and state before the load, from a state next to failure where the structure is large (warm_start.py).
+    """Apply the load from a state next to failure where the structure is large (warm_start.py).
 
     None: there is no such state, or it fails under a load below its own, which proves nothing; all is as it was.
     """
@@ -182,7 +182,7 @@ def _next_to_failure(job: CaseJob, sim: Simulation, load: float, elastic: float)
 
 
 def _proof(verdict: Verdict, share: float, load: float) -> str:
-    """In words."""
+    """Describe the proof of a verdict in words."""
     where = "" if share in (0.0, 1.0) else f" at {share:g} of the load"
     if verdict.state == "equilibrium":
         return f"at rest: forces balance to {verdict.unbalanced:.1g} of each block's weight"
@@ -195,7 +195,7 @@ def _proof(verdict: Verdict, share: float, load: float) -> str:
 
 
 def moved_into_it(run: StaticRun) -> bool:
-    """Whether limit analysis finds forces that carry the loads of a run that stands, where its blocks have moved to."""
+    """Test by limit analysis whether a structure that stands could carry its loads in its displaced geometry."""
     sim, moved = run.sim, run.result.displacement
     if sim.kinematics == "fixed":
         return False
@@ -207,7 +207,7 @@ def moved_into_it(run: StaticRun) -> bool:
 
 
 def fall(run: StaticRun, observer: Observer, until: float, frames: int) -> str | None:
-    """Follows the collapse of a structure that failed, with geometry that moves, until a block moved by `until` [m].
+    """Follow the collapse of a failed structure with moving geometry, until a block moved by `until` [m].
 
     Frames and rows go to the observer; returns why it did not go that far, if so.
     """

@@ -1,4 +1,4 @@
-"""The structures of a safety analysis: the case with weaker joints, or with another value of a key."""
+"""Vary the structure of a safety analysis: weaker joints, or another value of a key."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ UNLIMITED = ("elastic",)  # laws without any strength
 
 
 def scale_of(case: Case, settings: SafetySettings = DEFAULT.safety) -> Scale:
-    """The values that a case asks for. Raises CaseError where they are impossible."""
+    """Return the range of values of a safety analysis. Raises CaseError where they are impossible."""
     analysis: SafetyAnalysis = case.analysis
     low, high = analysis.ends
     if analysis.of_strength:
@@ -43,7 +43,7 @@ def scale_of(case: Case, settings: SafetySettings = DEFAULT.safety) -> Scale:
 
 
 def expected(case: Case) -> tuple[int, int]:
-    """Fewest and most runs that are likely: two next to the guess of limit analysis, or a bisection of the range."""
+    """Estimate the fewest and most runs: two next to the guess of limit analysis, or a bisection of the range."""
     analysis, scale = case.analysis, scale_of(case, DEFAULT.safety)
     largest = max(abs(scale.low), abs(scale.high))
     width = math.log(scale.high / scale.low) if scale.ratio else (scale.high - scale.low) / largest
@@ -52,12 +52,12 @@ def expected(case: Case) -> tuple[int, int]:
 
 
 def changed(case: Case, key: str, value: float) -> Case:
-    """The case with another value of a key, a whole number where it is one."""
+    """Return the case with another value of a key, rounded to an integer where it is one."""
     return with_value(case, key, int(value) if isinstance(value_at(case, key), int) else value)
 
 
 def checked_model(case: Case, value: float) -> Model:
-    """The model of a changed case. Raises CaseError, at analysis.between, where it is no structure."""
+    """Create the model of a changed case. Raises CaseError, at analysis.between, where it is invalid."""
     try:
         made = assembly(case)
         found = problems(case, made.model, made.blocks)
@@ -69,7 +69,7 @@ def checked_model(case: Case, value: float) -> Model:
 
 
 def load_doubts(case: Case, value: float) -> list[str]:
-    """A word where loads do not follow the blocks of a changed case: they keep the place that `at` gives them."""
+    """Warn about loads that do not follow the blocks of a changed case: they stay at the place given by `at`."""
     changed_case = changed(case, case.analysis.vary, value)
     found = [problem for problem in odd_loads(changed_case, assembly(changed_case).model) if "at" in problem.path]
     if not found:
@@ -82,7 +82,7 @@ def load_doubts(case: Case, value: float) -> list[str]:
 
 
 def weaker(case: Case, factor: float) -> Case:
-    """The case with strengths divided by a factor. Raises CaseError where a law does not allow what comes out."""
+    """Divide all strengths of a case by a factor. Raises CaseError where a law does not allow the result."""
     joints = {}
     for name, joint in case.joints.items():
         try:
@@ -93,7 +93,7 @@ def weaker(case: Case, factor: float) -> Case:
 
 
 def _check_strengths(case: Case) -> None:
-    """Raises CaseError where a factor would change nothing, or cannot be put into a joint."""
+    """Raise CaseError where a strength reduction has no effect, or cannot be applied to a joint."""
     which = case.analysis.reduce
     for name, joint in case.joints.items():
         if joint.law not in UNLIMITED and not strengths(joint):

@@ -1,4 +1,4 @@
-"""Perturbed structures: how much of an answer is chance? Small errors, drawn from the seed of the case.
+"""Perturbed structures for the sensitivity of results to small errors, drawn from the seed of the case.
 
 Joints stay closed as drawn: gaps would change the structure, not perturb it ([[imperfection]] makes those). An error of
 size ε of a block changes its mass, and moves its centre of mass against its joints, by that share; both are done to
@@ -24,7 +24,7 @@ STREAM = 0xD1FF  # so that no other draws from the same seed are met
 
 
 class Variant:
-    """One structure of a set: number 0 is the one of the case, the others differ from it.
+    """Perturbed variant of a structure: number 0 is the one of the case, the others differ from it.
 
     case, model  with its own joints and masses
     motion       factor on the ground motion
@@ -43,12 +43,12 @@ class Variant:
 
 
 def _draw(generator: np.random.Generator, deviation: float, shape: tuple[int, ...], largest: float) -> np.ndarray:
-    """Normal, limited."""
+    """Draw truncated normal errors."""
     return deviation * np.clip(generator.standard_normal(shape), -largest, largest)
 
 
 def _other_friction(case: Case, deviation: float, generator: np.random.Generator, largest: float) -> Case:
-    """A factor on the friction coefficient of each named joint that has one."""
+    """Scale the friction coefficient of each named joint by a random factor."""
     joints = {}
     for (name, joint), error in zip(
         case.joints.items(), _draw(generator, deviation, (len(case.joints),), largest), strict=True
@@ -67,7 +67,7 @@ def other_sizes(
     generator: np.random.Generator,
     largest: float = DEFAULT.statistics.largest_draw,
 ) -> Model:
-    """Masses, centres of mass and direction of gravity with errors; the places of all corners stay.
+    """Perturb masses, centres of mass and direction of gravity; the corners of blocks stay in place.
 
     deviation: relative, of masses, of the distances of the corners along each axis, and of the lean [rad].
     """

@@ -1,1 +1,1 @@
-"""Calibration: the joint profile that comes closest to a test."""
+"""Calibrate the joint profile that comes closest to a test."""

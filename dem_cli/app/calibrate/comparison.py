@@ -1,4 +1,4 @@
-"""Comparison of calibration trials with measured values: distances, and the closest of them."""
+"""Compare calibration trials with measured values: distances, and the closest trial."""
 
 from __future__ import annotations
 
@@ -27,7 +27,9 @@ class TrialAnswer(NamedTuple):
 
 
 def distance(measured: Calibration, found: TrialAnswer) -> float | None:
-    """Distance to the measured point, with loads and displacements in measured ones; None where there is no answer."""
+    """Compute the distance to the measured point, relative to measured load and displacement; None without an
+    answer.
+    """
     if found.status != OK or found.failure_load is None or found.displacement is None:
         return None
     load = found.failure_load / measured.failure_load - 1.0
@@ -37,7 +39,7 @@ def distance(measured: Calibration, found: TrialAnswer) -> float | None:
 def rows(
     measured: Calibration, trials: Sequence[CalibrationTrial], found: Sequence[TrialAnswer]
 ) -> list[dict[str, Any]]:
-    """A row per trial, that of plane joints first; lengths in metres."""
+    """Create one row per trial, that of plane joints first; lengths in metres."""
     plane = found[0].failure_load if found[0].status == OK else None
     table = []
     for trial, one in zip(trials, found, strict=True):
@@ -62,13 +64,13 @@ def rows(
 
 
 def closest(table: Sequence[dict[str, Any]]) -> int | None:
-    """Number of the row that is nearest to the measured point; plane joints do not count."""
+    """Return the number of the row nearest to the measured point; plane joints do not count."""
     answered = [i for i, row in enumerate(table) if row["shape"] is not None and row["distance"] is not None]
     return min(answered, key=lambda i: table[i]["distance"], default=None)
 
 
 def as_csv(table: Sequence[dict[str, Any]]) -> str:
-    """The rows as CSV with a header; nothing where there is no number."""
+    """Format the rows as CSV with a header; empty where there is no number."""
     keys = [key for key in table[0] if key not in ("failure_load_bracket", "seconds", "warnings")]
     text = io.StringIO()
     writer = csv.DictWriter(text, keys, extrasaction="ignore", lineterminator="\n")
@@ -79,7 +81,7 @@ def as_csv(table: Sequence[dict[str, Any]]) -> str:
 
 
 def as_text(summary: Mapping[str, Any]) -> list[str]:
-    """The table of the thesis (Table 7-2): a line per profile, the closest one marked."""
+    """Format the table of the thesis (Table 7-2): a line per profile, the closest one marked."""
     lines: list[tuple[str, ...]] = [
         ("shape", "sides", "middle side", "aperture [mm]", "load", "of plane", "displacement [mm]", "distance", "")
     ]
@@ -95,7 +97,7 @@ def as_text(summary: Mapping[str, Any]) -> list[str]:
 
 
 def _line(row: Mapping[str, Any], closest: bool) -> tuple[str, ...]:
-    """One trial as words."""
+    """Format one trial as cells of text."""
     shape, displacement = row["shape"], row["displacement"]
     return (
         shape or "plane",
@@ -115,7 +117,7 @@ def _number(value: float | None, form: str) -> str:
 
 
 def _range(value: Any, factor: float, form: str, unit: str = "") -> str:
-    """A number or a range as words; nothing for None."""
+    """Format a number or a range; empty for None."""
     if value is None:
         return ""
     ends = value if isinstance(value, list) else [value]
@@ -123,7 +125,7 @@ def _range(value: Any, factor: float, form: str, unit: str = "") -> str:
 
 
 def _plain(limits: tuple[Any, Any] | None) -> Any:
-    """A range as one number where it is one."""
+    """Reduce a range of equal ends to one number."""
     if limits is None:
         return None
     return limits[0] if limits[0] == limits[1] else list(limits)

@@ -1,4 +1,4 @@
-"""[calibration]: what was measured on a structure, and the profiles of its joints to try (thesis 7.4.1)."""
+"""Table [calibration]: measured values of a structure, and the joint profiles to try (thesis 7.4.1)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class NamedShape(ShapeTable):
 
     @property
     def share_in_the_middle(self) -> tuple[float, float] | None:
-        """Lowest and highest share of the middle side; None where sides vary so that there is no telling."""
+        """Lowest and highest share of the middle side; None where sides vary so that it is unknown."""
         low, high = self.number
         if self.central is not None:
             return pair(self.central)

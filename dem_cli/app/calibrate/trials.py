@@ -1,4 +1,4 @@
-"""Trial cases of a calibration: the one in the file with plane joints, and with every shape and aperture."""
+"""Trial cases of a calibration: the given case with plane joints, and with every shape and aperture."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class CalibrationTrial(NamedTuple):
-    """One case to solve; without a shape its joints are plane."""
+    """Trial case of a calibration; without a shape its joints are plane."""
 
     case: Case
     shape: NamedShape | None = None
@@ -21,14 +21,14 @@ class CalibrationTrial(NamedTuple):
 
     @property
     def name(self) -> str:
-        """What the table and messages call it."""
+        """Name of the trial in the table and messages."""
         if self.shape is None or self.aperture is None:
             return "plane joints"
         return f"shape {self.shape.name}, aperture {1e3 * self.aperture:.3g} mm"
 
 
 def trials(case: Case) -> list[CalibrationTrial]:
-    """Plane joints first, then all apertures of the first shape, and so on.
+    """Create all trial cases: plane joints first, then all apertures of the first shape, and so on.
 
     Each watches the displacement that was measured, in its last monitor. Without [reference] and [calibration]:
     these belong to the case in the file.
@@ -47,7 +47,7 @@ def trials(case: Case) -> list[CalibrationTrial]:
 
 
 def profiled(joint: CaseModel, shape: NamedShape, aperture: float) -> CaseModel:
-    """The joint with this profile instead of its own, or of its points."""
+    """Replace the profile or the points of a joint by this profile."""
     table = joint.model_dump(exclude_unset=True, exclude={"profile", "points"})
     profile = shape.model_dump(exclude_none=True, exclude={"name"})
     return type(joint).model_validate({**table, "profile": {**profile, "aperture": aperture}})

@@ -1,1 +1,1 @@
-"""The `dem` command: one file per subcommand."""
+"""Implement the `dem` command: one file per subcommand."""

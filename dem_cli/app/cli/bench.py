@@ -1,4 +1,4 @@
-"""`dem bench`: measure run time against error, on this machine."""
+"""Measure run time against error on this machine: `dem bench`."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def command(
 
 
 def check_places(folder: Path | None, json_file: str | None) -> None:
-    """Raises UsageError before anything is measured where results could not be written."""
+    """Raise UsageError before anything is measured where results could not be written."""
     if json_file not in (None, "-") and not Path(str(json_file)).resolve().parent.is_dir():
         raise UsageError(f"--json {json_file}: there is no such folder")
     if folder is not None:
@@ -83,7 +83,7 @@ def check_places(folder: Path | None, json_file: str | None) -> None:
 
 
 def checked(groups: Sequence[str]) -> list[str]:
-    """The groups wanted, in their order. Raises UsageError on an unknown one."""
+    """Return the requested groups in their order. Raises UsageError on an unknown one."""
     unknown = [name for name in groups if name not in registry.GROUPS]
     if unknown:
         raise UsageError(f"no benchmark group '{unknown[0]}' (groups: {', '.join(registry.GROUPS)})")
@@ -91,7 +91,7 @@ def checked(groups: Sequence[str]) -> list[str]:
 
 
 def measured(name: str, options: BenchOptions) -> dict[str, Any]:
-    """One group as JSON holds it."""
+    """Measure one group; returns its JSON form."""
     from dem_cli.app.bench.cases import compiled
     from dem_cli.app.bench.record import group_table
 

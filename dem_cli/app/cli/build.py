@@ -1,4 +1,4 @@
-"""`dem build`: the blocks of a case as a file for another program."""
+"""Export the blocks of a case as a file for another program: `dem build`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`dem calibrate`: the joint profile whose failure load and displacement come closest to measured ones."""
+"""Calibrate the joint profile to measured failure load and displacement: `dem calibrate`."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def command(
 
 
 def check(loaded: LoadedCase) -> None:
-    """Raises UsageError for a case without calibration or without failure load, CaseError for an unknown joint."""
+    """Raise UsageError for a case without calibration or failure load, CaseError for an unknown joint."""
     case = loaded.case
     if case.calibration is None:
         raise UsageError(f"{loaded.path}: has no [calibration]: what was measured, and the profiles to try")
@@ -88,7 +88,7 @@ def check(loaded: LoadedCase) -> None:
 
 
 def check_trials(loaded: LoadedCase, plan: Sequence[CalibrationTrial]) -> None:
-    """Builds all models: mistakes in them, and in the place that was watched, are said before anything is solved."""
+    """Build all models, so that errors in them and in the measured point are reported before anything is solved."""
     from dem_cli.app import api
     from dem_cli.case.reader import LoadedCase as Loaded
 
@@ -103,7 +103,7 @@ def check_trials(loaded: LoadedCase, plan: Sequence[CalibrationTrial]) -> None:
 
 
 def blamed(problem: CaseProblem, loaded: LoadedCase, trial: CalibrationTrial) -> CaseProblem:
-    """A problem of a trial where it stands in the file."""
+    """Move a problem of a trial to its place in the case file."""
     path, calibration = problem.path, loaded.case.calibration
     if path[:2] == ("monitor", len(loaded.case.monitor)):
         return CaseProblem(("calibration", *path[2:]), problem.message)
@@ -114,7 +114,7 @@ def blamed(problem: CaseProblem, loaded: LoadedCase, trial: CalibrationTrial) ->
 
 
 def solve_all(plan: Sequence[CalibrationTrial], jobs: int, quiet: bool) -> list[TrialAnswer]:
-    """All trials."""
+    """Solve all trials."""
     from dem_cli.case.writer import case_text
 
     found: dict[int, TrialAnswer] = {}
@@ -128,18 +128,18 @@ def solve_all(plan: Sequence[CalibrationTrial], jobs: int, quiet: bool) -> list[
 
 
 class RowKeeper(Observer):
-    """An observer that keeps the rows of the history."""
+    """Observer that keeps the rows of the history."""
 
     def __init__(self) -> None:
         self.rows: list[HistoryRow] = []
 
     def row(self, row: HistoryRow) -> None:
-        """Keep it."""
+        """Append a row."""
         self.rows.append(row)
 
 
 def solved(text: str) -> TrialAnswer:
-    """One trial, up to failure: its case as text, so that it can go to another process.
+    """Solve one trial up to failure, from the text of its case, so that it can run in another process.
 
     Raises KeyboardInterrupt where it was stopped.
     """
@@ -170,7 +170,7 @@ def solved(text: str) -> TrialAnswer:
 
 
 def before_failure(rows: Sequence[HistoryRow], summary: dict[str, Any], resolution: float) -> float | None:
-    """Displacement of what was measured at the highest load that was held [m].
+    """Return the measured displacement at the highest load in equilibrium [m].
 
     Where the geometry of the start was kept, a mechanism rests wherever it is left: there it is the smallest of all
     that are at this load within the resolution.
@@ -182,7 +182,7 @@ def before_failure(rows: Sequence[HistoryRow], summary: dict[str, Any], resoluti
 
 
 def summarised(loaded: LoadedCase, plan: Sequence[CalibrationTrial], found: Sequence[TrialAnswer]) -> dict[str, Any]:
-    """What summary.json holds. Raises SolverError where no profile has a failure load."""
+    """Create summary.json. Raises SolverError where no profile has a failure load."""
     from dem_cli.app.calibrate.comparison import closest, rows
     from dem_cli.results.output.summary import ordered
 
@@ -215,7 +215,7 @@ def summarised(loaded: LoadedCase, plan: Sequence[CalibrationTrial], found: Sequ
 
 
 def polygon_of(shape: NamedShape, seed: int) -> dict[str, list[float]]:
-    """Vertices of a shape, or of one that is drawn: places as shares of the joint, rises as shares of the aperture."""
+    """Return the vertices of a shape, drawn at random if needed: places along the joint and rises, as shares."""
     from dem_cli.core.contact.layout import PointLayout, draw
     from dem_cli.core.laws.profile import Profile
 
@@ -225,7 +225,7 @@ def polygon_of(shape: NamedShape, seed: int) -> dict[str, list[float]]:
 
 
 def write(folder: OutputFolder, summary: dict[str, Any], plan: Sequence[CalibrationTrial], quiet: bool) -> None:
-    """Summary, table, the case with the closest profile, and the picture."""
+    """Write summary, table, the case with the closest profile, and the picture."""
     from dem_cli.app.calibrate.comparison import as_csv
     from dem_cli.case.writer import case_text
     from dem_cli.results.output.folder import write_error
@@ -249,7 +249,7 @@ def write(folder: OutputFolder, summary: dict[str, Any], plan: Sequence[Calibrat
 
 
 def answer(summary: dict[str, Any], folder: Path) -> str:
-    """The table of all profiles, and what was written."""
+    """Format the table of all profiles, and the list of written files."""
     from dem_cli.app.calibrate.comparison import as_text
     from dem_cli.app.cli.run import file_names, shown
 

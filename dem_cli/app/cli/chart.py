@@ -1,4 +1,4 @@
-"""Charts of `dem plot`: which columns, which runs, and what they are called."""
+"""Charts of `dem plot`: choice of columns and runs, and their names."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LONGEST_CELL = 60  # letters of a cell of a listing
 
 @cache
 def describe(key: str) -> tuple[str, str]:
-    """Meaning and unit of a key of the case file, where all kinds of table agree on it."""
+    """Return meaning and unit of a key of the case file, where all kinds of table agree on it."""
     from dem_cli.app.api import make_case_model
     from dem_cli.case.explain import find
 
@@ -33,7 +33,7 @@ def describe(key: str) -> tuple[str, str]:
 
 
 class ColumnChoice(NamedTuple):
-    """Columns that a chart shows, in the user's words."""
+    """Columns of a chart as the user names them."""
 
     x: str | None = None
     ys: Sequence[str] = ()
@@ -43,7 +43,7 @@ class ColumnChoice(NamedTuple):
 
 
 def of_runs(folders: Sequence[Path], choice: ColumnChoice, target: Path, options: ChartOptions) -> None:
-    """A curve for each run. Raises UsageError."""
+    """Draw a curve for each run. Raises UsageError."""
     from dem_cli.results.output.reader import read
     from dem_cli.results.post.curves import FamilyMember, draw_curves
     from dem_cli.results.post.labels import of_key
@@ -66,7 +66,7 @@ def of_runs(folders: Sequence[Path], choice: ColumnChoice, target: Path, options
 
 
 def _columns(results: Results, choice: ColumnChoice) -> tuple[str, list[str]]:
-    """What was asked for, with the usual columns where nothing was said."""
+    """Return the requested columns, or the usual ones."""
     from dem_cli.results.post.run_columns import usual
 
     found = usual(results)
@@ -77,7 +77,7 @@ def _columns(results: Results, choice: ColumnChoice) -> tuple[str, list[str]]:
 
 
 def _names(folders: Sequence[Path]) -> list[str]:
-    """What tells the folders apart: their last names, or more of their paths."""
+    """Return distinct names of folders: their last names, or more of their paths."""
     paths = [folder.resolve() for folder in folders]
     for depth in range(1, max(len(path.parts) for path in paths) + 1):
         names = ["/".join(path.parts[-depth:]) for path in paths]
@@ -87,7 +87,7 @@ def _names(folders: Sequence[Path]) -> list[str]:
 
 
 def _case_value(folder: Path, key: str) -> Any:
-    """Value of a key in the effective case of a run. Raises UsageError."""
+    """Return the value of a key in the effective case of a run. Raises UsageError."""
     from dem_cli.app import api
     from dem_cli.case.overrides import key_path, value_at
     from dem_cli.results.output.store import CASE
@@ -102,7 +102,7 @@ def _case_value(folder: Path, key: str) -> Any:
 
 
 def of_sweep(folder: Path, choice: ColumnChoice, target: Path, options: ChartOptions) -> None:
-    """Columns of its table, or of its runs where the table has none of that name. Raises UsageError."""
+    """Draw columns of the table of a sweep, or of its runs where the table lacks them. Raises UsageError."""
     from dem_cli.results.post.labels import nearest
     from dem_cli.results.post.maps import draw_map
     from dem_cli.results.post.sweep_chart import draw_sweep
@@ -132,7 +132,7 @@ def of_sweep(folder: Path, choice: ColumnChoice, target: Path, options: ChartOpt
 
 
 def _needs_map(table: SweepTable, x: str | None, ys: Sequence[str], ranked: Sequence[str]) -> bool:
-    """Whether, where nobody said how, an answer in words over two keys would be nothing but lines on top of lines."""
+    """Test whether a textual answer over two keys needs a map, since lines would overlap."""
     from dem_cli.results.post.sweep_table import is_answer_in_words
 
     return x is None and len(ys) == 1 and len(ranked) == 2 and is_answer_in_words(table.columns[ys[0]])
@@ -148,7 +148,7 @@ def _condition(text: str) -> tuple[str, Any]:
 
 
 def _quantities(table: SweepTable) -> dict[str, Quantity]:
-    """Words and units of all columns."""
+    """Return words and units of all columns."""
     from dem_cli.results.post.labels import of_key, of_output
 
     said = {name: values for name, values in table.columns.items() if name.endswith(".unit")}
@@ -157,7 +157,7 @@ def _quantities(table: SweepTable) -> dict[str, Quantity]:
 
 
 def _kept(table: SweepTable) -> Iterator[tuple[int, Path]]:
-    """Rows whose runs kept their results, and where these are."""
+    """Yield the rows whose runs kept their results, with their folders."""
     from dem_cli.results.output.store import RESULTS
     from dem_cli.results.output.sweep_files import RUNS
 
@@ -168,7 +168,7 @@ def _kept(table: SweepTable) -> Iterator[tuple[int, Path]]:
 
 
 def _has_runs(table: SweepTable, names: Sequence[str]) -> bool:
-    """Whether the runs know these columns. Raises UsageError where nobody can, and that is why."""
+    """Test whether the kept runs of a sweep have these columns."""
     from dem_cli.results.output.reader import read
     from dem_cli.results.post.labels import nearest
     from dem_cli.results.post.run_columns import tables
@@ -181,7 +181,7 @@ def _has_runs(table: SweepTable, names: Sequence[str]) -> bool:
 
 
 def _runs_of_sweep(table: SweepTable, choice: ColumnChoice, target: Path, options: ChartOptions) -> None:
-    """A curve for each run that is kept, coloured by a swept key."""
+    """Draw a curve for each kept run, coloured by a swept key."""
     from dem_cli.results.output.reader import read
     from dem_cli.results.post.chart import MOST_NAMES
     from dem_cli.results.post.curves import FamilyMember, draw_curves
@@ -199,7 +199,7 @@ def _runs_of_sweep(table: SweepTable, choice: ColumnChoice, target: Path, option
 
 
 def listing(folders: Sequence[Path], sweep: bool) -> list[str]:
-    """A line for each column: its name, its unit, and what it means."""
+    """List the columns, a line each: name, unit, and meaning."""
     from dem_cli.results.output.reader import read
     from dem_cli.results.post.run_columns import tables
     from dem_cli.results.post.sweep_table import distinct, numeric, read_sweep, shown

@@ -1,4 +1,4 @@
-"""`dem check`: validate a case and print its model; nothing is solved."""
+"""Validate a case and print its model without solving it: `dem check`."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def command(
 
 
 def at_once(model: Model, work: Callable[[], Done]) -> Done:
-    """What `work` returns: of few blocks without numba, which takes longer to load than Python to be done with them."""
+    """Call `work`; for few blocks without compiling, which takes longer to load than the work itself."""
     from dem_cli.core.kernels.jit import uncompiled
 
     if len(model.vertices) <= FEW_CORNERS[model.dimension] and _pairs(model) <= FEW_NEIGHBOURS * model.n_parts:
@@ -90,7 +90,7 @@ def at_once(model: Model, work: Callable[[], Done]) -> Done:
 
 
 def _pairs(model: Model) -> int:
-    """How many pairs of parts are near each other: what checks take time for, where one block is huge or many overlap.
+    """Count the pairs of parts near each other, the cost of the checks.
 
     Of few parts: it takes memory by the square of their number.
     """
@@ -107,7 +107,7 @@ def _pairs(model: Model) -> int:
 
 
 def draw(case: Case, model: Model, found: dict[str, str], path: Path, asked: Standpoint) -> None:
-    """The picture of a model before a run."""
+    """Draw the picture of a model before a run."""
     from dem_cli.results.output.folder import write_error
     from dem_cli.results.post.chart import check_format
     from dem_cli.results.post.scene.model_picture import ModelFacts, draw_model
@@ -127,7 +127,7 @@ def draw(case: Case, model: Model, found: dict[str, str], path: Path, asked: Sta
 
 
 def marks(case: Case, model: Model) -> list[tuple[str, np.ndarray]]:
-    """Monitors of blocks and points: name and place."""
+    """Return names and places of the monitors of blocks and points."""
     import numpy as np
 
     from dem_cli.app.pipeline.monitor_names import monitor_names
@@ -143,14 +143,14 @@ def marks(case: Case, model: Model) -> list[tuple[str, np.ndarray]]:
 
 
 def unit(direction: Sequence[float]) -> np.ndarray:
-    """A direction of length one, (d,)."""
+    """Normalise a direction to length one, (d,)."""
     import numpy as np
 
     return np.array(direction, float) / np.hypot.reduce(np.array(direction, float))
 
 
 def rows(case: Case, model: Model, applied: Sequence[AppliedLoad] = ()) -> list[tuple[str, str]]:
-    """What the case is made of: label and text of each line."""
+    """Describe the case: label and text of each line."""
     from dem_cli.results.output.paraview.vertices import size_in_words
 
     free = ~model.fixed
@@ -170,7 +170,7 @@ def rows(case: Case, model: Model, applied: Sequence[AppliedLoad] = ()) -> list[
 
 
 def _surface_load(load: AppliedLoad) -> str:
-    """Where a pressure or a fill acts, its resultant and the middle of its forces."""
+    """Describe the place, resultant and centre of a pressure or fill."""
     parts = (", ".join(f"{x + 0.0:.4g}" for x in vector) for vector in (load.resultant, load.centre.round(9)))
     resultant, centre = parts
     n_blocks = len(set(load.blocks.tolist()))
@@ -180,7 +180,7 @@ def _surface_load(load: AppliedLoad) -> str:
 
 
 def _drawn(case: Case) -> list[tuple[str, str]]:
-    """What structures have drawn at random."""
+    """Describe the random parameters of structures."""
     from dem_cli.masonry.structures.registry import generated_figures
 
     return [
@@ -189,7 +189,7 @@ def _drawn(case: Case) -> list[tuple[str, str]]:
 
 
 def _imports(case: Case) -> list[tuple[str, str]]:
-    """How files of other programs and outlines of walls were read."""
+    """Describe how files of other programs and outlines of walls were read."""
     files = {table.id: _notes(table) for table in case.structure if table.kind == "import"}
     outlines = {table.id: table.outline.drawn.notes for table in case.structure if getattr(table, "outline", None)}
     rows = []
@@ -200,13 +200,13 @@ def _imports(case: Case) -> list[tuple[str, str]]:
 
 
 def _notes(table: Any) -> tuple[str, ...]:
-    """How a file of another program was read."""
+    """Return the notes on how a file of another program was read."""
     from dem_cli.masonry.structures.imported import imported
 
     return tuple(imported(table).notes)
 
 
 def _imperfections(case: Case) -> str:
-    """How many tables, and what they are drawn from."""
+    """Describe the number of imperfection tables and their random seed."""
     count = len(case.imperfection)
     return f"{count} {'table' if count == 1 else 'tables'}; what is random is drawn from seed {case.seed}"

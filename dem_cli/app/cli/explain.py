@@ -1,4 +1,4 @@
-"""`dem explain`: what a key of the case file means, what it may be, and what holds without it."""
+"""Explain a key of the case file: meaning, allowed values, and default: `dem explain`."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def command(key: str | None, as_json: bool) -> None:
 
 
 def about_key(entry: CaseEntry) -> str:
-    """Meaning, then a line per property."""
+    """Describe a key: its meaning, then a line per property."""
     key = entry.key
     assert key is not None
     example = f"{key.table.heading}   {key.example}" if key.table.path else key.example
@@ -58,7 +58,7 @@ def about_key(entry: CaseEntry) -> str:
 
 
 def about_kinds(found: Sequence[CaseEntry]) -> str:
-    """The key that says which kind of table it is, or all of these tables: the kinds, each with what it is."""
+    """Describe the key that selects the kind of a table, or several such tables: each kind in a line."""
     table = found[0].table
     rows = [(f'"{entry.kinds[0]}"', summary(entry.table)) for entry in found]
     about = f"{table.said}\n{table.tag} is one of these"
@@ -68,7 +68,7 @@ def about_kinds(found: Sequence[CaseEntry]) -> str:
 
 
 def about_table(entry: CaseEntry) -> str:
-    """What the table is, then its keys."""
+    """Describe a table, then its keys."""
     table, rows = entry.table, []
     for key in table.keys:
         if not key.names_kind:
@@ -79,7 +79,7 @@ def about_table(entry: CaseEntry) -> str:
 
 
 def laid_out(head: str, about: str, rows: Sequence[tuple[str, str]]) -> str:
-    """A heading, paragraphs and two columns, as wide as the terminal."""
+    """Format a heading, paragraphs and two columns, as wide as the terminal."""
     page = click.HelpFormatter(width=min(shutil.get_terminal_size((WIDEST, 24)).columns, WIDEST))
     page.write(f"{head}\n")
     page.indent()
@@ -89,13 +89,13 @@ def laid_out(head: str, about: str, rows: Sequence[tuple[str, str]]) -> str:
 
 
 def found_in(entry: CaseEntry) -> str:
-    """The kinds of table that have it."""
+    """List the kinds of table that have a key."""
     tag = "law" if entry.table.path[:1] == ("joints",) else "kind"
     return f"{tag} = " + ", ".join(f'"{kind}"' for kind in entry.kinds) if entry.kinds else ""
 
 
 def listing(found: Sequence[CaseEntry]) -> str:
-    """One line per key or table; of a table with kinds, one for all of them."""
+    """List keys and tables, one line each; all kinds of a table share one."""
     lines: dict[str, list[str]] = {}
     for entry in found:
         name = entry.path if entry.key else entry.table.heading
@@ -111,22 +111,22 @@ def listing(found: Sequence[CaseEntry]) -> str:
 
 
 def several_kinds(found: Sequence[CaseEntry]) -> bool:
-    """Whether these are kinds of one table."""
+    """Test whether all entries are kinds of one table."""
     return len(found) > 1 and len({entry.path for entry in found}) == 1 and all(map(names_kind, found))
 
 
 def names_kind(entry: CaseEntry) -> bool:
-    """Whether it is one kind of several of a table, or the key that says which."""
+    """Test whether an entry is one kind of a table, or the key that selects the kind."""
     return bool(entry.table.tag) and (entry.key is None or entry.key.names_kind)
 
 
 def summary(table: CaseTable) -> str:
-    """What a table is, in a line."""
+    """Describe a table in one line."""
     return table.about.split("\n")[0].rstrip(".")
 
 
 def facts(entry: CaseEntry) -> dict[str, Any]:
-    """All that is known of one key or table."""
+    """Return all properties of one key or table."""
     table, key = entry.table, entry.key
     found: dict[str, Any] = {"path": entry.path, "table": table.heading, "kinds": list(entry.kinds)}
     if key is None:

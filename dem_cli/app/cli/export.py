@@ -1,4 +1,4 @@
-"""`dem export`: results in other formats."""
+"""Export results in other formats: `dem export`."""
 
 from __future__ import annotations
 

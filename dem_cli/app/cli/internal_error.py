@@ -1,4 +1,4 @@
-"""Internal errors: a fault of the program becomes a message, a file to send with traceback and case, exit code 70."""
+"""Internal errors: message, report file with traceback and case, exit code 70."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LARGEST_CASE = 1_000_000  # bytes of a file that is copied into the report
 
 
 def report(error: Exception, words: Sequence[str]) -> int:
-    """Says what happened and where the file to send is; returns the exit code. words: the command line."""
+    """Print the error and the report file to send; returns the exit code. words: the command line."""
     if os.environ.get(TRACEBACK, "") not in ("", "0"):
         traceback.print_exception(error)
     if isinstance(error, MemoryError):
@@ -42,13 +42,13 @@ def report(error: Exception, words: Sequence[str]) -> int:
 
 
 def summary(error: Exception) -> str:
-    """The exception in one line."""
+    """Format the exception in one line."""
     said = str(error).strip().splitlines()
     return f"{type(error).__name__}: {said[0]}" if said else type(error).__name__
 
 
 def write(error: Exception, words: Sequence[str]) -> Path:
-    """The report as a new file in the current folder, or where that cannot be written in that of temporary files."""
+    """Write the report as a new file in the current folder, or in that of temporary files."""
     text = "".join(
         (
             f"dem {__version__}, Python {platform.python_version()}, {platform.platform()}\n",
@@ -69,12 +69,12 @@ def write(error: Exception, words: Sequence[str]) -> Path:
 
 
 def is_case(word: str) -> bool:
-    """Whether an argument is a case file."""
+    """Test whether an argument is a case file."""
     return word.endswith(".toml") and Path(word).is_file()
 
 
 def case_text(path: Path) -> str:
-    """What a case file holds, as far as it can be read."""
+    """Read the text of a case file, as far as possible."""
     try:
         return path.read_bytes()[:LARGEST_CASE].decode("utf-8", errors="replace")
     except OSError as error:
@@ -82,5 +82,5 @@ def case_text(path: Path) -> str:
 
 
 def command_line(args: object) -> list[str]:
-    """The words after `dem`: those that were handed in, or those of the process."""
+    """Return the words after `dem`: the given ones, or those of the process."""
     return [str(word) for word in args] if isinstance(args, Sequence) else sys.argv[1:]

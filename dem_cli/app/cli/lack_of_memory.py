@@ -1,4 +1,4 @@
-"""Lack of memory in words: what was being made, of how many blocks and contact points, and what needs less."""
+"""Message about lack of memory: the work, its numbers of blocks and contact points, and the remedy."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ FEWER_BLOCKS = "fewer, larger blocks need less"
 
 
 class MemoryUser(NamedTuple):
-    """Part of the program that takes much of it."""
+    """Part of the program that takes much memory."""
 
     rooms: tuple[str, ...]  # packages of dem_cli
     makes: str
@@ -38,7 +38,7 @@ ANYTHING = MemoryUser((), "what was asked for", "fewer blocks or frames need les
 
 
 def lack_of_memory(error: MemoryError) -> str:
-    """One line: what the memory was for, how large that is, what the system said, and what needs less."""
+    """Describe the use of the memory, its size, the system's message and the remedy, in one line."""
     frames = list(_frames(error.__traceback__))
     modules = [frame.f_globals.get("__name__", "").split(".") for frame in frames]
     users = [user for names in modules for user in USERS if not set(user.rooms).isdisjoint(names[1:3])]
@@ -55,7 +55,7 @@ def _frames(trace: TracebackType | None) -> Iterator[FrameType]:
 
 
 def _counts(frames: list[FrameType]) -> dict[str, int]:
-    """Sizes of what was at work, by name: the last one of each kind that a function held."""
+    """Collect the sizes of the work by name: the last one of each kind in the failed functions."""
     found: dict[str, int] = {}
     for value in (value for frame in frames for value in frame.f_locals.values()):
         if count := COUNTS.get(f"{type(value).__module__}.{type(value).__name__}"):

@@ -1,4 +1,4 @@
-"""`dem limit`: the failure load of a case by rigid-block limit analysis, without any motion in time."""
+"""Compute the failure load of a case by rigid-block limit analysis, without time stepping: `dem limit`."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def command(
 
 
 def loads_of_start(model: Model, find: Callable[..., LimitLoads]) -> tuple[LimitLoads, str | None]:
-    """Limit analysis by `find(settings=...)`, and what is to be said of gaps of the start.
+    """Run limit analysis by `find(settings=...)`; returns the loads and a remark about initial gaps.
 
     They stay open, unless nothing carries the dead loads then: those that close like joints are taken as closed.
     """
@@ -105,7 +105,7 @@ def loads_of_start(model: Model, find: Callable[..., LimitLoads]) -> tuple[Limit
 
 
 def code(summary: dict[str, Any], loaded: LoadedCase) -> int:
-    """As `dem run` of the case, whose references are about its own answer: only whether they expect a fall counts."""
+    """Return the exit code as for `dem run`; references count only as far as they expect a collapse."""
     from dem_cli.results.output.reference import unexpected_fall
     from dem_cli.results.output.summary import exit_code
 
@@ -115,7 +115,7 @@ def code(summary: dict[str, Any], loaded: LoadedCase) -> int:
 
 
 def require_multiplier(loaded: LoadedCase) -> None:
-    """Raises UsageError for a kind of analysis that has no live loads."""
+    """Raise UsageError for a kind of analysis that has no live loads."""
     kind = loaded.case.analysis.kind
     if kind != "pushover":
         raise UsageError(
@@ -125,7 +125,7 @@ def require_multiplier(loaded: LoadedCase) -> None:
 
 
 def summarised(loaded: LoadedCase, model: Model, found: LimitLoads, heads: str) -> dict[str, Any]:
-    """What summary.json holds for kind "limit"."""
+    """Create summary.json for kind "limit"."""
     from dem_cli.analyses.hand_check import hand_check
     from dem_cli.results.output.summary import ordered
 
@@ -148,7 +148,7 @@ def summarised(loaded: LoadedCase, model: Model, found: LimitLoads, heads: str) 
 
 
 def status(found: LimitLoads) -> str:
-    """Status of the whole: that of the first load that was not found; joints that lock as they dilate may fail else."""
+    """Return the overall status: that of the first load that was not found."""
     from dem_cli.core.limit.associated import LOCKED, OK
 
     path = found.non_associated
@@ -156,7 +156,7 @@ def status(found: LimitLoads) -> str:
 
 
 def frames(loaded: LoadedCase, found: LimitLoads) -> list[Frame]:
-    """The states of collapse that were found."""
+    """Create the frames of the collapse mechanisms that were found."""
     from dem_cli.core.limit.associated import OK
     from dem_cli.core.limit.snapshot import Collapse, frame
 
@@ -171,7 +171,7 @@ def frames(loaded: LoadedCase, found: LimitLoads) -> list[Frame]:
 
 
 def end_of_path(found: LimitLoads) -> Collapse | None:
-    """The state of collapse of joints that do not dilate; None where it was not found, or not looked for."""
+    """Return the collapse mechanism of joints that do not dilate; None where it was not found or sought."""
     from dem_cli.core.contact.corner_forces import at_corners
     from dem_cli.core.limit.associated import OK
     from dem_cli.core.limit.snapshot import Collapse
@@ -188,7 +188,7 @@ def end_of_path(found: LimitLoads) -> Collapse | None:
 def write(
     loaded: LoadedCase, model: Model, found: LimitLoads, summary: dict[str, Any], output: Path, force: bool
 ) -> None:
-    """summary.json, results.h5, the files for ParaView and case.toml in the folder `output`, whole or not at all."""
+    """Write summary.json, results.h5, the ParaView files and case.toml to the folder `output`, all or none."""
     from dem_cli.case.writer import case_text
     from dem_cli.core.contact.drawn_joints import DrawnJoints
     from dem_cli.results.output.folder import OutputFolder

@@ -1,4 +1,4 @@
-"""The `dem` command: a table of subcommands, each imported only when it is used, and one place for errors.
+"""Entry point of the `dem` command: subcommands imported on use, and one place for errors.
 
 A subcommand lives in dem_cli/app/cli/<name>.py as a click command named `command`. It raises DemError for
 everything that is the user's to mend, and returns its exit code (None is 0).
@@ -53,7 +53,7 @@ _ended: list[int] = []  # the exit code of a command that ended, in a process of
 
 
 def _leave() -> None:
-    """Ends such a process at once: to free all objects one by one takes a tenth of a short run (so does mypy)."""
+    """End the process at once: freeing all objects takes a tenth of a short run."""
     if _ended:
         with suppress(OSError, ValueError):  # what cannot be printed is Python's to say
             sys.stdout.flush()
@@ -69,20 +69,20 @@ INTERRUPTED_CODE = 130  # what a shell reports for a program ended by Ctrl-C
 
 
 class LazyGroup(click.Group):
-    """A group that imports a subcommand when it is called and turns every DemError into its exit code."""
+    """Command group that imports subcommands on use and turns every DemError into its exit code."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """The names of all subcommands, in the order of the help."""
+        """Return the names of all subcommands, in the order of the help."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """A subcommand, imported now; None where there is none of that name."""
+        """Import a subcommand; None for an unknown name."""
         if name not in COMMANDS:
             return None
         return import_module(f"dem_cli.app.cli.{name}").command
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
-        """What a shell offers in place of a command: those that begin so, without importing any, or options."""
+        """Complete a command in the shell without importing any, or an option."""
         from click.shell_completion import CompletionItem
 
         if incomplete.startswith("-"):
@@ -92,19 +92,19 @@ class LazyGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The subcommand that the arguments name, or an error with the nearest name."""
+        """Return the subcommand that the arguments name, or raise an error with the nearest name."""
         name = args[0]
         if name not in COMMANDS and not name.startswith("-"):
             ctx.fail(unknown_command(name))
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """The table of subcommands in the help, without importing any."""
+        """Format the table of subcommands in the help, without importing any."""
         with formatter.section("Commands"):
             formatter.write_dl(list(COMMANDS.items()))
 
     def main(self, *args: Any, **options: Any) -> Any:
-        """Run and exit: the only place where an error becomes a line on stderr and an exit code."""
+        """Run a command and exit: the only place where an error becomes a line on stderr and an exit code."""
         options |= {"prog_name": options.get("prog_name") or "dem", "standalone_mode": False}
         is_program = not args and options.get("args") is None
         with Interrupts(at_once=True, ends_program=is_program) as interrupts:  # until a command has something to keep
@@ -142,20 +142,20 @@ class LazyGroup(click.Group):
 
 
 def interrupted() -> int:
-    """The end after Ctrl-C."""
+    """Return the exit code after Ctrl-C."""
     click.echo("interrupted", err=True)
     return INTERRUPTED_CODE
 
 
 def unprinted(error: OSError) -> int:
-    """The end where the file or device that our output goes to takes no more (`dem ... > /dev/full`)."""
+    """Return the exit code after a failed write to standard output (`dem ... > /dev/full`)."""
     click.echo(f"error: cannot print to the standard output: {os.strerror(error.errno or 0).lower()}", err=True)
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return OutputError.exit_code
 
 
 def unopened(error: OSError) -> int:
-    """The end where a name of a file or folder is none that the system takes, whoever meets it first."""
+    """Return the exit code after a file or folder name that the system rejects."""
     name = printable(os.fsdecode(error.filename or ""))
     short = name if len(name) <= LONGEST_NAME else f"{name[:LONGEST_NAME]}..."
     click.echo(f"error: {short}: {os.strerror(error.errno or 0).lower()}", err=True)
@@ -163,7 +163,7 @@ def unopened(error: OSError) -> int:
 
 
 def unknown_command(name: str) -> str:
-    """What to say about a command that does not exist."""
+    """Return the message for an unknown command."""
     from difflib import get_close_matches
 
     close = get_close_matches(name, COMMANDS, 1)
@@ -172,7 +172,7 @@ def unknown_command(name: str) -> str:
 
 
 def quiet_pipe() -> int:
-    """The reader of our output went away (`dem ... | head`): not an error, and nothing more to print."""
+    """Return the exit code after a closed pipe (`dem ... | head`): no error, and no more output."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return 0
 

@@ -1,4 +1,4 @@
-"""`dem motion`: the ground motions of a case, measured, written and drawn."""
+"""Measure, write and draw the ground motions of a case: `dem motion`."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ HEADINGS = ("record", "duration", "acceleration", "velocity", "displacement", "A
 
 
 class RecordGroup(NamedTuple):
-    """The records of one [motion] table."""
+    """Ground motion records of one [motion] table."""
 
     motions: list[Motion]
     target: TargetSpectrum | None  # what they were made to fit
@@ -64,7 +64,7 @@ def command(case: str, overrides: Sequence[str], output: Path | None, as_json: b
 
 
 def groups_of(loaded: LoadedCase, compare: bool = True) -> list[RecordGroup]:
-    """The records of every table. Raises UsageError for a case without motion, CaseError on a bad record."""
+    """Create the records of every table. Raises UsageError for a case without motion, CaseError on a bad record."""
     from dem_cli.core.motion.intensity_measures import fit
     from dem_cli.masonry.assembly.ground_motions import suites_of
 
@@ -88,7 +88,7 @@ def groups_of(loaded: LoadedCase, compare: bool = True) -> list[RecordGroup]:
 
 
 def summarised(loaded: LoadedCase, groups: Sequence[RecordGroup]) -> dict[str, Any]:
-    """What summary.json holds."""
+    """Create summary.json."""
     from dem_cli.core.motion.eurocode_suites import meets, verdict
     from dem_cli.core.motion.intensity_measures import strength
     from dem_cli.results.output.summary import ordered
@@ -129,13 +129,13 @@ def summarised(loaded: LoadedCase, groups: Sequence[RecordGroup]) -> dict[str, A
 
 
 def file_name(groups: Sequence[RecordGroup], i_group: int, k: int) -> str:
-    """`artificial-3.csv`; with the number of the table before it where there are several."""
+    """Return the file name of a record, `artificial-3.csv`, with the number of its table where there are several."""
     name = re.sub(r"[^\w.]+", "-", groups[i_group].motions[k].name).strip("-") or "motion"
     return f"{i_group + 1}-{name}.csv" if len(groups) > 1 else f"{name}.csv"
 
 
 def write(folder: Any, groups: Sequence[RecordGroup], summary: dict[str, Any]) -> None:
-    """CSV files, pictures, summary."""
+    """Write CSV files, pictures and summary."""
     from dem_cli.results.output.folder import write_error
     from dem_cli.results.output.summary import write_summary
 
@@ -153,7 +153,7 @@ def write(folder: Any, groups: Sequence[RecordGroup], summary: dict[str, Any]) -
 
 
 def draw(folder: Path, groups: Sequence[RecordGroup], title: str) -> None:
-    """Both pictures; without matplotlib a remark."""
+    """Draw both pictures, or print a remark without matplotlib."""
     from dem_cli.results.post.spectra import MotionSuite, draw_motions, draw_spectra
 
     suites = [MotionSuite(group.motions, group.target, group.chosen) for group in groups]
@@ -165,7 +165,7 @@ def draw(folder: Path, groups: Sequence[RecordGroup], title: str) -> None:
 
 
 def draw_spectra_of_run(folder: Path, output: Path) -> list[Path]:
-    """spectra.png of what shook the run in `folder`; nothing where nothing did, or where a record is gone."""
+    """Draw spectra.png of the ground motion of a run; nothing where there is none, or a record is gone."""
     from dem_cli.results.output.reader import read
 
     kind = read(folder).kind
@@ -173,7 +173,7 @@ def draw_spectra_of_run(folder: Path, output: Path) -> list[Path]:
 
 
 def draw_spectra_of_case(path: Path, kind: str, output: Path) -> list[Path]:
-    """spectra.png of a case: of a fragility study the whole suite, otherwise the record that is used."""
+    """Draw spectra.png of a case: of a fragility study the whole suite, otherwise the record in use."""
     from dem_cli.app import api
     from dem_cli.results.post.spectra import MotionSuite, draw_spectra
 
@@ -194,7 +194,7 @@ def draw_spectra_of_case(path: Path, kind: str, output: Path) -> list[Path]:
 
 
 def as_csv(motion: Motion) -> str:
-    """Samples as they are read again (`column = 2`), every digit kept."""
+    """Format the samples exactly as CSV that can be read again (`column = 2`)."""
     times = motion.samples()
     columns = (times, motion.acceleration(times), motion.velocity(times), motion.displacement(times))
     lines = [",".join(map(repr, row)) for row in zip(*(column.tolist() for column in columns))]
@@ -202,7 +202,7 @@ def as_csv(motion: Motion) -> str:
 
 
 def answer(summary: dict[str, Any], folder: Path) -> str:
-    """The table of all records, what a suite fulfils, and what was written."""
+    """Format the table of all records, the clauses that a suite meets, and the list of written files."""
     from dem_cli.app.cli.run import file_names, shown
 
     rows = [HEADINGS, *(cells(record) for record in summary["motions"])]
@@ -223,7 +223,7 @@ def answer(summary: dict[str, Any], folder: Path) -> str:
 
 
 def cells(record: dict[str, Any]) -> tuple[str, ...]:
-    """One line of the table."""
+    """Format one line of the table."""
     ratio = f"≥ {record['least_ratio']:.2f}, mean {record['mean_ratio']:.2f}" if "least_ratio" in record else "–"
     return (
         record["name"],

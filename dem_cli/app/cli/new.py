@@ -1,4 +1,4 @@
-"""`dem new`: a commented case file to start from, one template per kind in cli/templates."""
+"""Print a commented case file to start from, one template per kind in cli/templates: `dem new`."""
 
 from __future__ import annotations
 

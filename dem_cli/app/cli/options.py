@@ -1,4 +1,4 @@
-"""Options and parameter types that several subcommands share."""
+"""Options and parameter types shared by several subcommands."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class PictureSize(click.ParamType):
     name = "WIDTH[xHEIGHT]"
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> object:
-        """Width and height, None where it is left to the picture; an error where it is neither."""
+        """Parse width and height, None where it is left to the picture; an error for anything else."""
         match = re.fullmatch(r"(\d+)(?:x(\d+))?", str(value))
         sides = [int(side) for side in match.groups() if side] if match else []
         if not sides or not all(_SMALLEST <= side <= _LARGEST for side in sides):
@@ -59,7 +59,7 @@ class AxisLimits(click.ParamType):
     name = "LOW:HIGH"
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> object:
-        """Both ends; an error where they are none."""
+        """Parse both ends; an error for anything else."""
         try:
             low, high = map(float, str(value).split(":"))
         except ValueError:
@@ -70,7 +70,7 @@ class AxisLimits(click.ParamType):
 
 
 def load(case: str, overrides: Sequence[str]) -> LoadedCase:
-    """Read and validate the case that a command is given: a file, or standard input where it is `-`.
+    """Read and validate the case of a command: a file, or standard input where it is `-`.
 
     Relative paths in a case from standard input start at the working directory. Raises CaseError and UsageError.
     """
@@ -88,6 +88,6 @@ def load(case: str, overrides: Sequence[str]) -> LoadedCase:
 
 
 def warn(loaded: LoadedCase) -> None:
-    """Print on stderr what is doubtful about a case."""
+    """Print the warnings about a case on stderr."""
     for warning in loaded.warnings:
         click.echo(f"warning: {printable(warning)}", err=True)

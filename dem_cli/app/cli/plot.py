@@ -1,4 +1,4 @@
-"""`dem plot`: the pictures of a run; any columns of runs and sweeps as charts."""
+"""Draw the pictures of a run, and any columns of runs and sweeps as charts: `dem plot`."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def command(
 
 
 def holds_sweep(folders: Sequence[Path]) -> bool:
-    """Whether a sweep is to be drawn. Raises UsageError for a folder that is not there, or a sweep beside others."""
+    """Test whether the folder is a sweep. Raises UsageError for a missing folder, or a sweep among others."""
     from dem_cli.results.output.folder import require_folder
     from dem_cli.results.post.sweep_table import is_sweep
 
@@ -115,14 +115,14 @@ def holds_sweep(folders: Sequence[Path]) -> bool:
 
 
 def default(folders: Sequence[Path], sweep: bool) -> Path:
-    """Where a chart goes: beside the results; of several folders, here."""
+    """Return the default file of a chart: beside the results; of several folders, the working directory."""
     if len(folders) > 1:
         return Path(CHART)
     return folders[0] / (SWEEP if sweep else CHART)
 
 
 def draw_pictures(folder: Path, output: Path | None, animate: bool, asked: Standpoint) -> None:
-    """All pictures of one run."""
+    """Draw all pictures of one run."""
     from dem_cli.app.cli.motion import draw_spectra_of_run
     from dem_cli.results.output.folder import write_error
     from dem_cli.results.post.run_pictures import draw_all
@@ -141,7 +141,7 @@ def draw_pictures(folder: Path, output: Path | None, animate: bool, asked: Stand
 
 
 def draw_picture(folder: Path, name: str, path: Path, asked: Standpoint) -> None:
-    """One of the pictures of a run."""
+    """Draw one of the pictures of a run."""
     from dem_cli.results.output.folder import write_error
     from dem_cli.results.post.chart import check_format
     from dem_cli.results.post.run_pictures import draw_one
@@ -156,7 +156,7 @@ def draw_picture(folder: Path, name: str, path: Path, asked: Standpoint) -> None
 
 
 def draw_chart(folders: Sequence[Path], sweep: bool, choice: ColumnChoice, target: Path, options: ChartOptions) -> None:
-    """One chart, of runs or of a sweep."""
+    """Draw one chart, of runs or of a sweep."""
     from dem_cli.app.cli import chart
     from dem_cli.results.output.folder import write_error
     from dem_cli.results.post.chart import check_format

@@ -1,4 +1,4 @@
-"""`dem render`: stills and movies of a run in a stone look."""
+"""Render stills and movies of a run in a stone look: `dem render`."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def command(
 
 
 def target(folder: Path, output: Path | None, movie: str | None) -> Path:
-    """The file to write; UsageError where its name and --movie disagree."""
+    """Return the file to write; raises UsageError where its name and --movie disagree."""
     suffix = f".{movie}" if movie else STILL
     if output is None:
         return folder / f"render{suffix}"

@@ -1,4 +1,4 @@
-"""`dem report`: one page of HTML with everything that a run or a sweep left."""
+"""Write one HTML page with everything from a run or a sweep: `dem report`."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def command(folder: Path, output: Path | None, show: bool) -> None:
 
 
 def said(summary: dict[str, Any]) -> Any:
-    """The lines that `dem run` prints of a summary, and its verdicts."""
+    """Return the lines that `dem run` prints of a summary, and its verdicts."""
     from dem_cli.app.cli.words.reference import one_line
     from dem_cli.results.output.reference import as_declared, from_summary
     from dem_cli.results.report.run import TerminalText

@@ -1,4 +1,4 @@
-"""`dem run`: solve a case with a bar that shows how far it is; print the failure load and how sure it is."""
+"""Solve a case with a progress bar; print the failure load and its accuracy: `dem run`."""
 
 from __future__ import annotations
 
@@ -28,44 +28,44 @@ MORE_THREADS = (
 
 
 class TerminalListener(RunListener):
-    """Shows a bar, says what is left where, draws the pictures that are asked for."""
+    """Listener that shows a progress bar, prints remarks, and draws the requested pictures."""
 
     def __init__(self, bar: console.Progress, quiet: bool, plot: bool):
         self.bar, self.quiet, self.plot = bar, quiet, plot
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """On the bar."""
+        """Update the progress bar."""
         self.bar.update(stage, load, displacement, fraction)
 
     def solved(self) -> None:
-        """The bar goes."""
+        """Remove the progress bar."""
         self.bar.stop()
 
     def threads_without_work(self, used: int, wanted: int) -> None:
-        """A line on stderr."""
+        """Print a remark on idle threads."""
         console.note(f"{used} of {wanted} threads had work: {MORE_THREADS}", self.quiet)
 
     def written(self, folder: Path) -> None:
-        """The pictures, where they were asked for."""
+        """Draw the pictures, where requested."""
         if self.plot:
             draw(folder, self.quiet)
 
     def earlier_kept(self, folder: Path) -> None:
-        """A line on stderr."""
+        """Print that earlier results stay."""
         console.note(f"the earlier, complete results stay in {shown(folder)}", self.quiet)
 
     def runs_kept(self, count: int) -> None:
-        """A line on stderr."""
+        """Print how many finished runs are kept."""
         self.bar.stop()
         console.note(f"{count:,} runs are kept; go on with --resume", self.quiet)
 
     def stages_kept(self, seconds: float) -> None:
-        """A line on stderr."""
+        """Print how much work is kept."""
         self.bar.stop()
         console.note(f"the first {duration(seconds)} of work are kept; go on with --resume", self.quiet)
 
     def stages_not_kept(self, why: str) -> None:
-        """A line on stderr."""
+        """Print why no more work is kept."""
         console.note(f"nothing more of this run is kept for --resume: {why}", self.quiet)
 
 
@@ -144,7 +144,7 @@ def execute(
     solve: Solve | None = None,
     options: BatchOptions | None = None,
 ) -> RunOutcome:
-    """As pipeline.execution.execute, with words for the terminal and pictures."""
+    """Solve and write a case as pipeline.execution.execute, with terminal output and pictures."""
     from dem_cli.app.pipeline import execution
 
     with console.Progress(quiet) as bar:
@@ -154,7 +154,7 @@ def execute(
 
 
 def draw(folder: Path, quiet: bool) -> None:
-    """Pictures are welcome, not needed: what goes wrong with them is only said."""
+    """Draw the pictures; a failure is only reported."""
     try:
         from dem_cli.results.post.run_pictures import draw_all
 
@@ -168,7 +168,7 @@ def draw(folder: Path, quiet: bool) -> None:
 
 
 def file_names(folder: Path) -> list[str]:
-    """Our files in `folder`, the summary first."""
+    """List the files of dem in `folder`, the summary first."""
     from dem_cli.results.output.folder import OWN_NAMES, SUMMARY
 
     here = sorted(path.name for path in folder.iterdir() if path.name in OWN_NAMES)
@@ -176,7 +176,7 @@ def file_names(folder: Path) -> list[str]:
 
 
 def shown(folder: Path) -> Path:
-    """A path as the user would type it."""
+    """Format a path as the user would type it."""
     try:
         return folder.relative_to(Path.cwd())
     except ValueError:

@@ -1,4 +1,4 @@
-"""`dem schema`: the JSON Schema of the case file, for editors that complete and check keys."""
+"""Print the JSON Schema of the case file, for editors that complete and check keys: `dem schema`."""
 
 from __future__ import annotations
 

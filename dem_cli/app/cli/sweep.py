@@ -1,4 +1,4 @@
-"""`dem sweep`: a case over all values in its [sweep], side by side, with one table of the answers."""
+"""Solve a case for all values of its [sweep] in parallel, with one table of the answers: `dem sweep`."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def command(
 
 
 def planned(loaded: LoadedCase) -> SweepPlan:
-    """The runs that a case asks for. Raises CaseError, with file and line."""
+    """Plan the runs of a case. Raises CaseError, with file and line."""
     from dem_cli.app.sweep.plan import plan_of
 
     if loaded.case.sweep is None:
@@ -101,7 +101,7 @@ def planned(loaded: LoadedCase) -> SweepPlan:
 
 
 def sharded(text: str | None) -> tuple[int, int]:
-    """`2/8` -> (1, 8): every eighth run from the second on."""
+    """Parse a shard: `2/8` -> (1, 8), every eighth run from the second on."""
     if text is None:
         return 0, 1
     match = SHARD.fullmatch(text)
@@ -111,7 +111,7 @@ def sharded(text: str | None) -> tuple[int, int]:
 
 
 def print_plan(sweep: PlannedSweep) -> None:
-    """The table without answers."""
+    """Print the table without answers."""
     import csv
     import sys
 
@@ -132,7 +132,7 @@ def print_plan(sweep: PlannedSweep) -> None:
 def spread(
     scheduler: str | None, processes: int | None, folder: Path, jobs: Sequence[SweepJob]
 ) -> Iterator[tuple[int, Any]]:
-    """Do jobs on a cluster, or in processes of this machine."""
+    """Run jobs on a cluster, or in processes of this machine."""
     from dem_cli.app.pipeline.jobs import do_job
 
     if scheduler is not None:
@@ -151,7 +151,7 @@ def spread(
 
 
 class SweepProgress:
-    """A sweep under way: what is known of its runs, and what the user is told meanwhile."""
+    """Sweep in progress: known runs, and what the user is shown meanwhile."""
 
     def __init__(self, loaded: LoadedCase, sweep: PlannedSweep, folder: Path, part: tuple[int, int], quiet: bool):
         self.loaded, self.sweep, self.folder, self.quiet = loaded, sweep, folder, quiet
@@ -159,7 +159,7 @@ class SweepProgress:
         self.known: dict[str, Summary] = {}
 
     def all(self, do: Spread, retry: bool) -> dict[str, Any]:
-        """Every run that is not there yet, then the tables; what an interrupt leaves is said and kept."""
+        """Do every missing run, then write the tables; an interrupt keeps what is done."""
         from dem_cli.app.sweep.folder import tables_alone
         from dem_cli.app.sweep.run import finished, solved, tidy
 
@@ -189,11 +189,11 @@ class SweepProgress:
 
     @property
     def count(self) -> int:
-        """Different runs of the whole sweep."""
+        """Number of different runs of the whole sweep."""
         return len({job.id for job in self.sweep.jobs if job is not None})
 
     def work(self, mine: PlannedSweep, do: Spread, wanted: set[str]) -> None:
-        """Do what is left, with a word on progress and a table of what is done so far."""
+        """Do the remaining runs, with progress and an intermediate table."""
         from dem_cli.app.sweep.run import carried_out, solved
         from dem_cli.app.sweep.table import columns, rows, write_csv
 
@@ -209,7 +209,7 @@ class SweepProgress:
                     due = time.monotonic() + max(TABLE_EVERY, 20.0 * (time.monotonic() - begun))
 
     def write(self) -> dict[str, Any]:
-        """The tables and sweep.json; the outcome."""
+        """Write the tables and sweep.json; returns the outcome."""
         from dem_cli.app.sweep.run import FAILED, WAITING
         from dem_cli.app.sweep.table import rows, write
         from dem_cli.core.records.statuses import FALLS
@@ -237,11 +237,11 @@ class SweepProgress:
         }
 
     def failure(self, row: dict[str, Any]) -> dict[str, Any]:
-        """What a user needs to know of a failed run."""
+        """Describe a failed run by its name, swept values and reason."""
         return {"run": row["run"], **{key: row[key] for key in self.sweep.plan.keys}, "reason": row["reason"]}
 
     def facts(self, status: str, found: dict[str, Any] | None = None) -> None:
-        """Write sweep.json and the case, with what was changed on the command line."""
+        """Write sweep.json and the case, with changes of the command line."""
         from dem_cli.app.sweep.folder import write_facts
         from dem_cli.results.output.atomic_file import write_text
         from dem_cli.results.output.store import CASE
@@ -253,7 +253,7 @@ class SweepProgress:
 
 
 def brief(value: Any) -> str:
-    """A value in few letters."""
+    """Format a value briefly."""
     from dem_cli.app.sweep.plan import show_value
 
     text = f"{value:.6g}" if isinstance(value, float) else show_value(value)
@@ -261,7 +261,7 @@ def brief(value: Any) -> str:
 
 
 def told(found: dict[str, Any], folder: Path) -> str:
-    """The outcome as a user reads it."""
+    """Format the outcome of a sweep."""
     from dem_cli.app.cli.run import shown
 
     lines = [found["title"] or "sweep"]

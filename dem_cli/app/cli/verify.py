@@ -1,4 +1,4 @@
-"""`dem verify`: all cases with a known answer, ours beside it."""
+"""Verify all cases with a known answer against it: `dem verify`."""
 
 from __future__ import annotations
 
@@ -96,20 +96,20 @@ def command(
 
 
 def split(cases: Sequence[Path], costs: dict[str, float], at_most: float | None) -> tuple[list[Path], list[Path]]:
-    """Cases to run, and those known to take longer."""
+    """Split cases into those to run, and those known to take longer."""
     slow = [] if at_most is None else [case for case in cases if costs.get(known_as(case), 0.0) > at_most]
     return [case for case in cases if case not in slow], slow
 
 
 def known_as(case: Path) -> str:
-    """The name of a case in records: its path from here."""
+    """Return the name of a case in records: its relative path."""
     from dem_cli.app.verify.records import moved
 
     return moved(case.as_posix(), Path(), Path())
 
 
 def nothing(without: int, slow: int, pattern: str, shelves: Sequence[str]) -> str:
-    """Why there is nothing to do."""
+    """Describe why there is nothing to do."""
     why = [f"{without} {'has' if without == 1 else 'have'} none"] if without else []
     why += [f"{slow} take longer"] if slow else []
     why += [f"none matches '{pattern}'"] if pattern and not why else []
@@ -118,13 +118,13 @@ def nothing(without: int, slow: int, pattern: str, shelves: Sequence[str]) -> st
 
 
 def left_out(without: int, slow: Sequence[Path]) -> list[str]:
-    """What was not run, a line each."""
+    """Describe the cases that were not run, a line each."""
     lines = [f"left out: {many(without, 'case')} without [reference]"] if without else []
     return lines + ([f"left out as too long: {', '.join(case.stem for case in slow)}"] if slow else [])
 
 
 def run_all(cases: Sequence[Path], costs: dict[str, float], jobs: int | None, quiet: bool) -> Iterator[Record]:
-    """Records of all cases as they come, the longest first."""
+    """Yield the records of all cases as they finish, the longest first."""
     from dem_cli.app.cli.words.run_counter import RunCounter
     from dem_cli.app.pipeline.batches import usable_cores
     from dem_cli.app.sweep.pool import WorkerDeath, each_done
@@ -142,7 +142,7 @@ def run_all(cases: Sequence[Path], costs: dict[str, float], jobs: int | None, qu
 
 
 def verified(path: Path) -> Record:
-    """One case, solved and compared; importable by other processes. Raises KeyboardInterrupt where it is stopped."""
+    """Solve and compare one case, in any process. Raises KeyboardInterrupt where it is stopped."""
     from dem_cli.app import api
     from dem_cli.app.pipeline.jobs import solve_one
     from dem_cli.app.verify.records import failed, record
@@ -163,7 +163,7 @@ def verified(path: Path) -> Record:
 
 
 def write_page(page: Path, records: list[Record]) -> None:
-    """The page and its JSON: new records, and those there of cases that were not run now."""
+    """Write the page and its JSON: new records, and earlier ones of other cases."""
     from dem_cli.app.verify.page import page as text
     from dem_cli.app.verify.records import data_file, dump, load, merged
 
@@ -173,7 +173,7 @@ def write_page(page: Path, records: list[Record]) -> None:
 
 
 def put(file: Path, text: str) -> None:
-    """Write a file whole. Raises OutputError."""
+    """Write a file atomically. Raises OutputError."""
     from dem_cli.results.output.atomic_file import write_text
     from dem_cli.results.output.folder import write_error
 
@@ -185,14 +185,14 @@ def put(file: Path, text: str) -> None:
 
 
 def code_of(records: Sequence[Record]) -> int:
-    """Exit code of the whole."""
+    """Return the overall exit code."""
     from dem_cli.app.verify.records import all_well
 
     return UsageError.exit_code if any(record.get("bad") for record in records) else 0 if all_well(records) else 1
 
 
 def show(records: Sequence[Record], took: float, as_json: bool) -> None:
-    """The answer on stdout; references of inference are counted by themselves."""
+    """Print the answer on stdout; references of kind "inference" are counted separately."""
     from dem_cli.app.verify.records import apart, counts
 
     others, of_inference = apart(records)
@@ -212,7 +212,7 @@ def show(records: Sequence[Record], took: float, as_json: bool) -> None:
 
 
 def in_words(records: Sequence[Record]) -> str:
-    """How many references there are in which state."""
+    """Describe the number of references in each state."""
     from dem_cli.app.verify.records import counts
 
     found = counts(records)
@@ -222,5 +222,5 @@ def in_words(records: Sequence[Record]) -> str:
 
 
 def many(number: int, noun: str) -> str:
-    """`1 case`, `2 cases`"""
+    """Format a count with its noun: `1 case`, `2 cases`."""
     return f"{number} {noun}{'s' * (number != 1)}"

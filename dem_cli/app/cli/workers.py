@@ -1,4 +1,4 @@
-"""Process pool of a command: runs side by side, each in a process of its own."""
+"""Process pool of a command: parallel runs in separate processes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Result = TypeVar("Result")
 
 
 def side_by_side(function: Callable[[Item], Result], items: Sequence[Item], jobs: int) -> Iterator[tuple[int, Result]]:
-    """As sweep.pool.each_done; raises SolverError where an item kills its process."""
+    """Run items in parallel processes; raises SolverError where an item kills its process."""
     for number, result in each_done(function, items, jobs):
         if isinstance(result, WorkerDeath):
             raise SolverError("a process of a run died, perhaps for want of memory; fewer --jobs need less")

@@ -1,1 +1,1 @@
-"""From a case to its results on disk: one way for the command line and for Python."""
+"""Pipeline from a case to its results on disk, shared by the command line and Python."""

@@ -1,4 +1,4 @@
-"""What a run keeps for `--resume`: stages of one run, or the finished ones of an analysis of many; its threads."""
+"""Storage of unfinished work for `--resume`: stages of one run, or finished runs of many; number of threads."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ if TYPE_CHECKING:
 
 
 class BatchOptions(NamedTuple):
-    """How runs are done, and what is kept of them meanwhile."""
+    """Options of many runs: threads, resuming, and what is stored meanwhile."""
 
     threads: int | None = None  # of an analysis that consists of many runs, None: all cores; of a run itself, None: one
     resume: bool = False  # go on where an interrupted one stopped
-    keeping: Keeping | None = DEFAULT_KEEPING  # stages of one run; None: nobody will ask for them
+    keeping: Keeping | None = DEFAULT_KEEPING  # stages of one run; None: none are stored
 
 
 def usable_cores() -> int:
-    """Cores that this process may use."""
+    """Count the cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def many(case: Case) -> bool:
-    """Whether the analysis of a case consists of many runs."""
+    """Test whether the analysis of a case consists of many runs."""
     return case.analysis.kind == "fragility" or getattr(case.analysis, "repeats", 0) > 0
 
 
@@ -43,7 +43,7 @@ def many(case: Case) -> bool:
 def batch_of(
     case: Case, text: str, folder: OutputFolder, options: BatchOptions, listener: RunListener
 ) -> Iterator[Batch | None]:
-    """Threads and journal of the runs of a case; None where it is one run. Says what an interrupted one leaves.
+    """Yield threads and journal of the runs of a case; None where it is one run. Reports what an interrupt leaves.
 
     text: the effective case. Raises UsageError where an earlier journal does not fit.
     """
@@ -68,7 +68,7 @@ def batch_of(
 def stages_of(
     case: Case, text: str, folder: OutputFolder, options: BatchOptions, recorder: Recorder
 ) -> Iterator[Checkpoints | None]:
-    """Lets the recorder keep the stages of a run; None where nothing is kept. Says what an interrupted one leaves.
+    """Let the recorder store the stages of a run; yields None where nothing is stored.
 
     Arguments and errors as `batch_of`.
     """
@@ -95,7 +95,7 @@ def stages_of(
 
 @contextmanager
 def _sound(path: Path, went_on: Callable[[], bool]) -> Iterator[None]:
-    """Says of a run that went on from what was kept, and failed as no run should, what else may be wrong than dem."""
+    """Add to the error of a resumed run that the stored work may be at fault."""
     from dem_cli.errors import DemError
     from dem_cli.results.output.resume.leftovers import damaged
 
@@ -111,7 +111,7 @@ def _sound(path: Path, went_on: Callable[[], bool]) -> Iterator[None]:
 
 
 def finish(batch: Batch, summary: dict[str, Any], listener: RunListener) -> None:
-    """Once the results are in place: the journal goes, or it is said that it stays."""
+    """Remove the journal once the results are in place, or report that it stays."""
     from dem_cli.results.output.resume.journal import Journal
 
     assert isinstance(batch.journal, Journal)
@@ -122,7 +122,7 @@ def finish(batch: Batch, summary: dict[str, Any], listener: RunListener) -> None
 
 
 def finish_stages(checkpoints: Checkpoints, summary: dict[str, Any], listener: RunListener) -> None:
-    """Once the results are in place: the checkpoints go, or it is said that they stay."""
+    """Remove the checkpoints once the results are in place, or report that they stay."""
     if summary["status"] == "interrupted":
         stages_left(checkpoints, listener)
     else:
@@ -130,12 +130,12 @@ def finish_stages(checkpoints: Checkpoints, summary: dict[str, Any], listener: R
 
 
 def stages_left(checkpoints: Checkpoints, listener: RunListener) -> None:
-    """What an interrupted run leaves."""
+    """Report the stored work of an interrupted run."""
     if checkpoints.found:
         listener.stages_kept(checkpoints.seconds)
 
 
 def left(journal: Journal, listener: RunListener) -> None:
-    """What an interrupted analysis leaves."""
+    """Report the finished runs of an interrupted analysis."""
     if journal.count:
         listener.runs_kept(journal.count)

@@ -1,4 +1,4 @@
-"""The summary of a run beyond what its solver says of it: how far a stopped one came, verdicts, names, times."""
+"""Complete the summary of a run: progress of a stopped one, verdicts, names, times."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ANSWERS = {
 
 
 def stopped(status: str, writer: ResultWriter, warnings: list[str]) -> dict[str, Any]:
-    """Summary of a run that did not reach its end."""
+    """Create the summary of a run that did not reach its end."""
     last = writer.last_row or writer.last_frame
     reached = last and {"stage": last.stage, "load": last.load, "displacement": last.displacement}
     if last and writer.kind == "time-history":
@@ -45,7 +45,7 @@ def stopped(status: str, writer: ResultWriter, warnings: list[str]) -> dict[str,
 
 
 def completed(found: dict[str, Any], loaded: LoadedCase, model: Model, started: float) -> dict[str, Any]:
-    """The solver's summary with everything that is not the solver's."""
+    """Add everything to the summary that does not come from the solver."""
     from dem_cli.results.output.reference import in_summary, verdicts
     from dem_cli.results.output.summary import ordered
 
@@ -61,7 +61,7 @@ def completed(found: dict[str, Any], loaded: LoadedCase, model: Model, started: 
 
 
 def with_names(found: dict[str, Any], names: Sequence[str], quantities: Sequence[str]) -> dict[str, Any]:
-    """The summary of a solver, with the peaks of repeats by the names of monitors and with units."""
+    """Name the peaks of repeats by their monitors and add units."""
     repeats = found.get("repeats")
     if not repeats or "peaks" not in repeats:
         return found

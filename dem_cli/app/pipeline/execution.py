@@ -1,4 +1,4 @@
-"""From a case to its results: build, solve, write. The one way, for `dem run`, `dem sweep`, `dem verify` and Python."""
+"""Build, solve and write a case: the one pipeline for `dem run`, `dem sweep`, `dem verify` and Python."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class SolverOutcome(Protocol):
-    """What a solver returns."""
+    """Outcome of a solver."""
 
     summary: dict[str, Any]
 
@@ -41,7 +41,7 @@ RunOutcome = tuple[dict[str, Any], Path]  # the summary, and the folder with the
 
 @dataclass(frozen=True)
 class Destination:
-    """Where the results of a run go, and what to do with what is there (results/output/folder.py: OutputFolder)."""
+    """Destination of the results of a run, and the treatment of existing files (OutputFolder)."""
 
     output: Path
     force: bool = False  # write among files that dem did not write
@@ -57,7 +57,7 @@ def run_case(
     listener: RunListener | None = None,
     interrupts: Interrupts | None = None,
 ) -> RunOutcome:
-    """Build a case that was read, solve it and write its results, as `execute`. Raises DemError."""
+    """Build, solve and write a case that was read, as `execute`. Raises DemError."""
     from dem_cli.app import api
 
     return execute(
@@ -131,21 +131,21 @@ def execute(
 
 
 def one_of_many(loaded: LoadedCase) -> None:
-    """The [sweep] of a case joins its warnings, where the case is solved once."""
+    """Add a warning about the [sweep] of a case that is solved once."""
     if loaded.case.sweep is not None:
         line = loaded.render(CaseProblem(("sweep",), ONE_OF_MANY))
         loaded.warnings += [line] if line not in loaded.warnings else []
 
 
 def load_solver(batch: Batch | None) -> Solve:
-    """The solver, imported only when a case is ready to be solved."""
+    """Import the solver, only when a case is ready to be solved."""
     from dem_cli.analyses.solve import solve
 
     return solve if batch is None else partial(solve, batch=batch)
 
 
 def solved(solve: Solve, case: Case, model: Model, recorder: Recorder) -> dict[str, Any]:
-    """The solver's summary; where it was interrupted or gave up, how far it came."""
+    """Run the solver and return its summary; after an interrupt or failure, its progress."""
     writer = recorder.writer
     try:
         return solve(case, model, recorder).summary
@@ -167,7 +167,7 @@ def abandoning(writer: ResultWriter) -> Iterator[None]:
 
 
 def put_in_place(folder: OutputFolder, summary: dict[str, Any], listener: RunListener) -> Path:
-    """Commit; an interrupted run goes beside earlier complete results, not over them."""
+    """Commit the results; an interrupted run goes beside earlier complete ones, not over them."""
     from dem_cli.results.output.folder import INTERRUPTED_SUFFIX, is_complete
 
     if summary["status"] != "interrupted" or not is_complete(folder.final):

@@ -1,4 +1,4 @@
-"""One run as a function that other processes can be asked for: of a sweep, of `dem verify`."""
+"""Solve one run as a function for other processes: of a sweep, of `dem verify`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def solve_one(
     folder: str | Path | None = None,
     text: str | None = None,
 ) -> dict[str, Any]:
-    """The summary of a case with its overrides; where it cannot be run, status "failed", reason and exit_code.
+    """Solve a case with its overrides; a failed one returns status "failed", reason and exit_code.
 
     folder: where the results go; None keeps none. text: what the case file holds, if not read from `path`.
     Says nothing on the terminal.
@@ -53,7 +53,7 @@ def _solved(
 
 
 def do_job(job: SweepJob) -> Summary:
-    """A run of a sweep, wherever it is done; what fails leaves its reason in the folder of the run.
+    """Do a run of a sweep in any process; a failure leaves its reason in the folder of the run.
 
     Raises OutputError: a full disk is no fault of the run, which is done when there is room again. Raises
     KeyboardInterrupt where it was stopped.

@@ -1,4 +1,4 @@
-"""Progress of a run and what becomes of its results, told to whoever runs it: a command, a notebook, a test."""
+"""Listener for the progress of a run and its results: for a command, a notebook, a test."""
 
 from __future__ import annotations
 
@@ -6,30 +6,30 @@ from pathlib import Path
 
 
 class RunListener:
-    """Hears how a run goes; this one does nothing. Its methods return at once and change nothing."""
+    """Listener of a run that does nothing. Its methods return at once and change nothing."""
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """Where the solver stands; `fraction` of the stage that is done, None where nobody can tell."""
+        """Report the progress of the solver; `fraction` of the stage that is done, None where it is unknown."""
 
     def solved(self) -> None:
-        """The solver has ended; its results are being completed."""
+        """Report that the solver has ended; its results are being completed."""
 
     def threads_without_work(self, used: int, wanted: int) -> None:
-        """Fewer threads stepped the structure than were wanted."""
+        """Report that fewer threads stepped the structure than were requested."""
 
     def written(self, folder: Path) -> None:
-        """All files of a run that nobody interrupted are in `folder`, which is about to get its final name; pictures
-        may join them.
+        """Report that all files of a finished run are in `folder`, before it gets its final name; pictures may join
+        them.
         """
 
     def earlier_kept(self, folder: Path) -> None:
-        """The run was interrupted: the earlier, complete results stay in `folder`, these go beside it."""
+        """Report that the run was interrupted: earlier, complete results stay in `folder`, these go beside it."""
 
     def runs_kept(self, count: int) -> None:
-        """An analysis of many runs was interrupted; so many of them are done and kept for `resume`."""
+        """Report that an analysis of many runs was interrupted, and how many are stored for `resume`."""
 
     def stages_kept(self, seconds: float) -> None:
-        """A run was interrupted; so much of its work is kept for `resume`."""
+        """Report that a run was interrupted, and how much of its work is stored for `resume`."""
 
     def stages_not_kept(self, why: str) -> None:
-        """Nothing more of the run is kept for `resume`."""
+        """Report that no more of the run is stored for `resume`."""

@@ -1,4 +1,4 @@
-"""Names of monitors, and whether a [reference] asks for one that the case has."""
+"""Names of monitors, and a check that each [reference] to one exists."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def monitor_names(monitors: Sequence[Monitor]) -> list[str]:
-    """A different name for each, such as "top-right displacement x"."""
+    """Return a unique name for each monitor, such as "top-right displacement x"."""
     from dem_cli.results.output.distinct_names import distinct
 
     def told(monitor: Monitor) -> str:
@@ -24,12 +24,12 @@ def monitor_names(monitors: Sequence[Monitor]) -> list[str]:
 
 
 def monitor_quantities(monitors: Sequence[Monitor]) -> list[str]:
-    """What each follows, a key of results/output/series.py: UNITS."""
+    """Return the quantity of each monitor, a key of results/output/series.py: UNITS."""
     return [("absolute " if monitor.absolute else "") + monitor.quantity for monitor in monitors]
 
 
 def check_quantities(case: Case, names: Sequence[str]) -> None:
-    """Raises CaseError for a [reference] to a monitor that the case has not, or not so: before a long run, not after.
+    """Raise CaseError for a [reference] to a monitor that the case lacks: before a long run, not after.
 
     names: of the monitors. All other quantities are known only when there is a summary.
     """

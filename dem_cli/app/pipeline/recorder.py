@@ -1,4 +1,4 @@
-"""The observer of a run: everything that a solver reports goes to the files, and progress to the listener."""
+"""Observer of a run that writes all results to files, and forwards progress to the listener."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ if TYPE_CHECKING:
 
 
 def joints_of(model: Model) -> DrawnJoints:
-    """The joints of a structure, found when there is a frame to keep: that is compiled."""
+    """Create the joints of a structure as drawn, on first use since that is compiled."""
     from dem_cli.core.contact.drawn_joints import DrawnJoints
 
     return DrawnJoints(model)
 
 
-TOLD = {  # what the files are told, and of which class it is
+TOLD = {  # records that are written to the files, by kind, and their classes
     "frame": "Frame", "row": "HistoryRow", "samples": "Samples", "structure": "Model", "runs": "RunRow",
 }  # fmt: skip
 
 
 class Recorder(Observer):
-    """The observer of a run: keeps what comes, and says where the run stands."""
+    """Observer of a run: stores results, and forwards progress."""
 
     def __init__(self, writer: ResultWriter, listener: RunListener):
         self.writer, self.listener = writer, listener
@@ -40,16 +40,16 @@ class Recorder(Observer):
         self._last: tuple[str, float, float, float | None] | None = None  # of what was said of the progress
 
     def keep(self, stages: KeptStages) -> None:
-        """From now on they are told what goes into the files, for a run that goes on from there."""
+        """Send all further output to the stages as well, for a run that is resumed."""
         self.stages = self._noted = stages
         stages.goes_on, stages.gives_up = self.goes_on, self.listener.stages_not_kept
 
     def tell(self, kind: str, record: Any) -> None:
-        """Into the files: a "frame", "row", "samples", "structure" or "runs"."""
+        """Write output to the files: a "frame", "row", "samples", "structure" or "runs"."""
         getattr(self.writer, kind)(record)
 
     def tell_again(self, kind: str, record: Any) -> None:
-        """As `tell`, what an interrupted run told. Raises Damaged where no run tells that."""
+        """Write output of an interrupted run to the files. Raises Damaged where it is of no known kind."""
         each = record if kind == "runs" and isinstance(record, (list, tuple)) else (record,)
         if not all(type(one).__name__ == TOLD.get(kind) for one in each):
             raise Damaged(f"the results are told a {type(record).__name__}")
@@ -61,32 +61,32 @@ class Recorder(Observer):
             self._noted.note(kind, record)
 
     def frame(self, frame: Frame) -> None:
-        """Into the files."""
+        """Write a frame to the files."""
         self._tell("frame", frame)
 
     def row(self, row: HistoryRow) -> None:
-        """Into the files."""
+        """Write a history row to the files."""
         self._tell("row", row)
 
     def samples(self, samples: Samples) -> None:
-        """Into the files."""
+        """Write samples of a time history to the files."""
         self._tell("samples", samples)
 
     def structure(self, model: Model) -> None:
-        """Into the files."""
+        """Write the structure of the frames to come."""
         self._tell("structure", model)
 
     def runs(self, rows: Sequence[RunRow]) -> None:
-        """Into the files."""
+        """Write the table of many runs."""
         self._tell("runs", rows)
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """To the listener. Raises KeyboardInterrupt where one came."""
+        """Forward the progress to the listener. Raises KeyboardInterrupt where one came."""
         self._last = stage, load, displacement, fraction
         self.listener.progress(*self._last)
         look()
 
     def goes_on(self) -> None:
-        """A stage goes on that has nothing new to say: its time does."""
+        """Repeat the last progress, so that its elapsed time is updated."""
         if self._last is not None:
             self.listener.progress(*self._last)

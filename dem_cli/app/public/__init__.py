@@ -1,1 +1,1 @@
-"""The public Python interface: run, load, open, and the results."""
+"""Public Python interface: run, load, open, and the results."""

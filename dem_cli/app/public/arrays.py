@@ -12,7 +12,7 @@ Record = TypeVar("Record")  # what stands under a name
 
 
 class ArrayTable(Mapping[str, np.ndarray]):
-    """Arrays by name, as long as each other. `units` has the unit of each: SI; "" for a pure number or a word."""
+    """Arrays of equal length by name; `units` has the unit of each: SI; "" for a pure number or text."""
 
     def __init__(self, units: Mapping[str, str], values: Callable[[str], np.ndarray]):
         self.units = dict(units)
@@ -34,14 +34,14 @@ class ArrayTable(Mapping[str, np.ndarray]):
 
 
 class NamedRecords(dict[str, Record]):
-    """Monitors or tables by name; a name that is not there is answered with those that are."""
+    """Monitors or tables by name; an unknown name raises an error that lists the known ones."""
 
     def __missing__(self, name: str) -> Record:
         raise KeyError(unknown(name, list(self)))
 
 
 class MonitorHistory(NamedTuple):
-    """What a [[monitor]] saw: along the time of a time history, else state by state, in the order of `history`."""
+    """History of a [[monitor]]: along the time of a time history, else state by state, in the order of `history`."""
 
     values: np.ndarray  # (n,)
     unit: str
@@ -56,7 +56,7 @@ class MonitorHistory(NamedTuple):
 
 
 def unknown(name: object, names: list[str]) -> str:
-    """What to say about a name that is not there."""
+    """Return the message for an unknown name."""
     close = get_close_matches(str(name), names, 1)
     hint = f", did you mean '{close[0]}'?" if close else ""
     return f"no '{name}'{hint} (there are: {', '.join(names) or 'none'})"

@@ -1,4 +1,4 @@
-"""The Python interface: run a case, load a case, open results. `dem run` goes the same way."""
+"""Python interface: run a case, load a case, open results. `dem run` goes the same way."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ NO_FILE = Path("case")  # what messages call a case that is given as tables; its
 
 
 def load(case: CaseSource, set: Mapping[str, Any] | None = None) -> LoadedCase:
-    """Read and validate a case: the path of a case file, a case that was loaded before, or a dict of its tables.
+    """Read and validate a case: the path of a case file, a loaded case, or a dict of its tables.
 
     set: values by key path, as `dem run --set` takes them: {"joints.dry.friction": 0.5, "structure.0.courses": 8}.
     The answer has `case` (all tables, defaults filled in), `text`, `path` and `warnings`, a line for each doubt.
@@ -63,7 +63,7 @@ def run(
     force: bool = False,
     progress: ProgressFunction | None = None,
 ) -> Result:
-    """Solve a case, as `dem run` does, and give its results.
+    """Solve a case, as `dem run` does, and return its results.
 
     case, set   as `load`
     out         folder of the results, which appear in it whole or not at all; None: they are gone with the Result
@@ -71,7 +71,7 @@ def run(
                 structure together, None: one
     resume      go on where an interrupted or killed run of the same case stopped in `out`
     force       write among files that dem did not write; those stay
-    progress    is told now and then: stage, load multiplier, control displacement [m], share of the stage or None
+    progress    called now and then with stage, load multiplier, control displacement [m], share of the stage or None
 
     Raises CaseError (the case is wrong: all mistakes at once), UsageError (arguments, a missing file, a folder that is
     not ours), OutputError (full disk, no permission). A solver that gives up raises nothing: `Result.status` is then
@@ -106,7 +106,7 @@ def run(
 
 
 def open(folder: str | os.PathLike[str]) -> Result:
-    """The results that `dem run`, or `run` with `out`, left in a folder.
+    """Open the results that `dem run`, or `run` with `out`, left in a folder.
 
     Raises UsageError where there are none. A killed run is read up to its last frame; its summary is empty.
     """
@@ -114,12 +114,12 @@ def open(folder: str | os.PathLike[str]) -> Result:
 
 
 class ProgressListener(RunListener):
-    """Hands progress on to a function."""
+    """Listener that forwards progress to a function."""
 
     def __init__(self, function: ProgressFunction | None):
         self.function = function
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """Call it."""
+        """Call the function."""
         if self.function is not None:
             self.function(stage, load, displacement, fraction)

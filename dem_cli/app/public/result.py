@@ -1,4 +1,4 @@
-"""The results of a run in Python: summary, histories, frames, contact forces, monitors, with units."""
+"""Results of a run in Python: summary, histories, frames, contact forces, monitors, with units."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ from dem_cli.results.post.run_columns import tables as columns_of
 
 
 class Result:
-    """The results of a run. `dem_cli.run` and `dem_cli.open` make it; a `with` block, or `close()`, ends it.
+    """Results of a run. `dem_cli.run` and `dem_cli.open` create it; a `with` block, or `close()`, ends it.
 
-    Frames are read from the file when they are asked for; all else is in memory once it was asked for. Closing lets
-    go of the file, and of the results themselves where the run was not told to keep them (`out=None`).
+    Frames are read from the file on access; all else stays in memory after its first use. Closing releases the file,
+    and deletes the results of a run that keeps none (`out=None`).
     """
 
     def __init__(self, folder: Path, temporary: Path | None = None):
@@ -41,22 +41,22 @@ class Result:
 
     @property
     def path(self) -> Path:
-        """The folder that the results are in; of a run that keeps none it is gone with the Result."""
+        """Folder of the results; of a run that keeps none it is gone with the Result."""
         return self._path
 
     @property
     def summary(self) -> dict[str, Any]:
-        """The answer and how it was obtained, as summary.json has it; {} of a run that was killed."""
+        """Answer and how it was obtained, as in summary.json; {} of a run that was killed."""
         return self._results.summary
 
     @property
     def status(self) -> str:
-        """How the run ended: "ok", "not converged", "interrupted", "running" of one that was killed, ..."""
+        """Status of the run: "ok", "not converged", "interrupted", "running" of one that was killed, ..."""
         return self._results.status
 
     @property
     def exit_code(self) -> int:
-        """What `dem run` returns for it: 0 solved, 1 outside a reference or does not stand, 3 gave up, 130 interrupted.
+        """Exit code of `dem run`: 0 solved, 1 outside a reference or does not stand, 3 gave up, 130 interrupted.
 
         Of a run that was killed 3.
         """
@@ -77,32 +77,34 @@ class Result:
 
     @property
     def case(self) -> str:
-        """The case as it was solved, as text: defaults filled in, overrides applied. Running it gives the same."""
+        """Effective case as text: defaults filled in, overrides applied. Running it gives the same."""
         return self._results.case_text
 
     @property
     def provenance(self) -> dict[str, str]:
-        """Versions of what computed this, by name."""
+        """Versions of the software that computed the results, by name."""
         return self._results.provenance
 
     @property
     def model(self) -> Model:
-        """The structure as arrays: names, masses, places and corners of the blocks."""
+        """Structure as arrays: names, masses, places and corners of the blocks."""
         return self._results.model
 
     @cached_property
     def history(self) -> ArrayTable:
-        """One row per state that the solver reported: "stage", "step", "load", "displacement", "time", ..."""
+        """History with one row per state that the solver reported: "stage", "step", "load", "displacement", "time",
+        ...
+        """
         return ArrayTable({name: unit_of(name) for name in self._results.history}, self._results.history.__getitem__)
 
     @cached_property
     def energy(self) -> ArrayTable:
-        """The energy ledger [J], one value per row of `history`."""
+        """Energy balance [J], one value per row of `history`."""
         return ArrayTable(dict.fromkeys(self._results.energy, "J"), self._results.energy.__getitem__)
 
     @cached_property
     def tables(self) -> Mapping[str, ArrayTable]:
-        """The tables that `dem plot` draws from, by title: "history", "time history", "response spectra", ..."""
+        """Tables that `dem plot` draws from, by title: "history", "time history", "response spectra", ..."""
         return NamedRecords({
             table.title: ArrayTable({name: q.unit for name, q in table.quantities.items()}, table.values)
             for table in columns_of(self._results)
@@ -110,19 +112,19 @@ class Result:
 
     @cached_property
     def monitors(self) -> Mapping[str, MonitorHistory]:
-        """What each [[monitor]] of the case saw, by its name."""
+        """Histories of the [[monitor]] tables of the case, by name."""
         names, asked = list(self._results.monitors), parse_toml(self._path, self.case).get("monitor", ())
         tables = asked if len(asked) == len(names) else [{}] * len(names)
         return NamedRecords({name: monitor_history(self._results, name, t) for name, t in zip(names, tables)})
 
     @property
     def frames(self) -> Frames:
-        """The snapshots, a sequence: `frames[-1].positions` [m]; `frames.units` has the units. Raises UsageError."""
+        """Snapshots as a sequence: `frames[-1].positions` [m]; `frames.units` has the units. Raises UsageError."""
         self._check_open()
         return self._results.frames
 
     def contacts(self, frame: int | Frame = -1) -> ArrayTable:
-        """All contact points at a frame (by default the last): "blocks", "points", "normal_force", "gap", "state", ...
+        """Return all contact points at a frame (by default the last): "blocks", "points", "normal_force", "gap", ...
 
         Forces are those on the second block, compression positive; "force" is the vector. Raises UsageError.
         """
@@ -132,7 +134,7 @@ class Result:
         return ArrayTable({name: units.get(name, "") for name in columns}, columns.__getitem__)
 
     def joints(self, frame: int = -1) -> ArrayTable:
-        """The joints as they were drawn, at a frame by its number (by default the last).
+        """Return the joints as drawn, at a frame by its number (by default the last).
 
         "blocks", "ends", "length", "area", and what became of them: "opening", "crack_width", "slip",
         "normal_stress" (compression positive), "shear_stress", "eccentricity", "state". Raises UsageError.
@@ -148,7 +150,7 @@ class Result:
         return ArrayTable({name: units.get(name, "") for name in columns}, columns.__getitem__)
 
     def corners(self, frame: int | Frame = -1) -> list[np.ndarray]:
-        """Corners in space [m] of each convex part at a frame (by default the last), (n_corners, d) each.
+        """Return the corners in space [m] of each convex part at a frame (by default the last), (n_corners, d) each.
 
         Part p belongs to the block `model.part_blocks[p]`. Raises UsageError.
         """
@@ -157,7 +159,7 @@ class Result:
         return np.split(placed, self.model.part_starts[1:-1])
 
     def frame(self, frame: int | Frame = -1) -> Frame:
-        """A frame by its number, negative from the end. Raises UsageError where there is none."""
+        """Return a frame by its number, negative from the end. Raises UsageError where there is none."""
         if isinstance(frame, Frame):
             return frame
         try:
@@ -166,13 +168,13 @@ class Result:
             raise UsageError(f"frame {frame}: these results have {len(self.frames)} frames") from None
 
     def close(self) -> None:
-        """Let go of the file, and of results that are not kept; harmless when it was done before."""
+        """Close the file, and delete results that are not kept; harmless when repeated."""
         self._closed = True
         self._release()
 
     @property
     def closed(self) -> bool:
-        """Whether `close` was called."""
+        """Tell whether `close` was called."""
         return self._closed
 
     def _check_open(self) -> None:
@@ -186,7 +188,7 @@ class Result:
         self.close()
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: the answer, and the collapse as a player while the results are there."""
+        """Return the HTML for a notebook: the answer, and the collapse as a player while the results are open."""
         from dem_cli.results.report.notebook import cell
 
         return cell(self._results, self.summary, readable=not self._closed)
@@ -197,12 +199,12 @@ class Result:
 
 
 def unit_of(column: str) -> str:
-    """Unit of a column of the history."""
+    """Return the unit of a column of the history."""
     return KNOWN_QUANTITIES[column].unit if column in KNOWN_QUANTITIES else ""
 
 
 def monitor_history(results: Results, name: str, table: dict[str, Any]) -> MonitorHistory:
-    """One monitor. table: its own in the case."""
+    """Return the history of one monitor. table: its own in the case."""
     quantity, absolute = str(table.get("quantity", "displacement")), bool(table.get("absolute", False))
     unit, series = MONITOR_UNITS[quantity], results.series
     if series is not None and name in series.monitors:
@@ -212,7 +214,7 @@ def monitor_history(results: Results, name: str, table: dict[str, Any]) -> Monit
 
 
 def release(source: ExitStack, folder: Path | None) -> None:
-    """Close what results are read from; remove the folder of those that are not kept."""
+    """Close the source of results; remove the folder of those that are not kept."""
     source.close()
     if folder is not None:
         shutil.rmtree(folder, ignore_errors=True)

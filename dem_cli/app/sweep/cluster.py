@@ -1,4 +1,4 @@
-"""The runs of a sweep on a Dask cluster: its workers see the same files, and run the same program."""
+"""Run a sweep on a Dask cluster, whose workers see the same files and run the same program."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ PATIENCE = 10  # s to reach the scheduler, and to wait for its first worker
 
 @contextmanager
 def connected(address: str, folder: Path) -> Iterator[Any]:
-    """A client of the cluster at `address`, whose workers have been asked whether they are fit.
+    """Connect to the cluster at `address` and check its workers.
 
     Raises UsageError where there is no cluster, where Dask is missing, or where a worker runs another program or
     does not see `folder`.
@@ -53,7 +53,7 @@ def connected(address: str, folder: Path) -> Iterator[Any]:
 
 
 def doubt(address: str) -> str | None:
-    """A line on a scheduler that others may reach: neither of this machine alone nor behind TLS; None: it is."""
+    """Return a warning about a scheduler that others may reach, neither local nor behind TLS; None: it is safe."""
     parts = urlsplit(address if "://" in address else f"tcp://{address}")
     if parts.scheme in PRIVATE or parts.hostname == "localhost":
         return None
@@ -65,7 +65,7 @@ def doubt(address: str) -> str | None:
 
 
 def _inspect(client: Any, address: str, folder: Path) -> None:
-    """Whether all workers are fit."""
+    """Check that all workers of the cluster are usable."""
     from dask.distributed import TimeoutError as TooLate
 
     try:
@@ -88,7 +88,7 @@ def _inspect(client: Any, address: str, folder: Path) -> None:
 
 
 def _asked(client: Any, function: Callable[..., Any], *values: Any) -> list[tuple[str, Any]]:
-    """What each worker answers, be it an error; one that is just leaving says nothing."""
+    """Call a function on each worker; returns answers and errors, except of workers that are leaving."""
     answers = client.run(function, *values, on_error="return")
     return [(worker, answer) for worker, answer in answers.items() if not isinstance(answer, OSError)]
 
@@ -96,7 +96,7 @@ def _asked(client: Any, function: Callable[..., Any], *values: Any) -> list[tupl
 def on_cluster(
     client: Any, do: Callable[[SweepJob], Summary], jobs: Sequence[SweepJob]
 ) -> Iterator[tuple[int, Summary | WorkerDeath]]:
-    """Number and result of each job as they come.
+    """Yield number and result of each job as they finish.
 
     A job whose worker dies is done again by another, a few times, by Dask; what seems to kill its workers is then done
     alone, because innocent jobs that waited at the same worker are suspected too.
@@ -112,7 +112,7 @@ def on_cluster(
 
 
 def _completed(futures: Any) -> Iterator[Any]:
-    """Futures as they are done, with a look at interrupts between waits of our own."""
+    """Yield futures as they finish, checking for interrupts."""
     while not futures.is_empty():
         batch = futures.next_batch(block=False)
         yield from batch
@@ -124,7 +124,7 @@ def _completed(futures: Any) -> Iterator[Any]:
 def _asked_for(
     client: Any, do: Callable[[SweepJob], Summary], jobs: Sequence[tuple[int, SweepJob]], suffix: str
 ) -> Iterator[tuple[int, Summary | WorkerDeath]]:
-    """Number and result of numbered jobs. Raises SolverError where the cluster goes away."""
+    """Yield number and result of numbered jobs. Raises SolverError where the cluster is lost."""
     from dask.distributed import CancelledError, KilledWorker, as_completed
 
     numbers = {job.id + suffix: number for number, job in jobs}

@@ -1,4 +1,4 @@
-"""Sampling of the values of a swept key: at even distances, or Latin hypercube samples of a distribution."""
+"""Sample the values of a swept key: at even distances, or by Latin hypercube from a distribution."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ QUANTILES: dict[str, Callable[[float, float, Fractions], np.ndarray]] = {  # qua
 
 
 def even(path: KeyPath, form: Mapping[str, Any]) -> list[float]:
-    """`{ from = 0.5, to = 1.0, count = 6 }`: both ends are in. Raises CaseError."""
+    """Return evenly spaced values `{ from = 0.5, to = 1.0, count = 6 }`, both ends included. Raises CaseError."""
     for key in form.keys() - EVEN_KEYS:
         raise _wrong((*path, key), "unknown key; values at even distances have 'from', 'to', 'count' and 'log'")
     for key in ("from", "to"):
@@ -59,7 +59,7 @@ def even(path: KeyPath, form: Mapping[str, Any]) -> list[float]:
 
 
 def drawn(path: KeyPath, form: Mapping[str, Any], fractions: Fractions) -> list[float | int]:
-    """Values at these fractions of a distribution such as `{ uniform = [0.5, 0.7] }`. Raises CaseError."""
+    """Return the values at fractions of a distribution such as `{ uniform = [0.5, 0.7] }`. Raises CaseError."""
     if len(form) > 1:
         raise _wrong(path, f"one distribution, not {len(form)} keys: {', '.join(map(str, form))}")
     ((name, numbers),) = form.items()
@@ -78,7 +78,7 @@ def drawn(path: KeyPath, form: Mapping[str, Any], fractions: Fractions) -> list[
 
 
 def latin_hypercube(dimensions: int, count: int, seed: int) -> np.ndarray:
-    """Points in the unit cube (count, dimensions): one in each of `count` slices of every axis (McKay et al. 1979)."""
+    """Sample points in the unit cube (count, dimensions): one in each of `count` slices of every axis (McKay 1979)."""
     from scipy.stats.qmc import LatinHypercube
 
     return LatinHypercube(dimensions, rng=seed).random(count)

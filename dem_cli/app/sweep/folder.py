@@ -1,4 +1,4 @@
-"""The folder of a sweep: its facts in sweep.json, its case, its tables, and a folder of runs."""
+"""Folder of a sweep: its facts in sweep.json, its case, its tables, and a folder of runs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ OURS = frozenset((FACTS, CASE, CSV, SQLITE, RUNS, "sweep.png", "report.html"))
 
 @contextmanager
 def opened(folder: Path, fresh: bool, force: bool, shard: str = "") -> Iterator[Path]:
-    """Make a folder for a sweep, or take up the one that is there; nobody else writes to it meanwhile.
+    """Create the folder of a sweep, or reopen it, locked against other processes.
 
     fresh: throw away the runs of before. shard: several share the folder, each under its own name; a whole sweep
     shares it with none. Raises UsageError where it holds other things, or another sweep goes on there.
@@ -61,7 +61,7 @@ def opened(folder: Path, fresh: bool, force: bool, shard: str = "") -> Iterator[
 
 @contextmanager
 def tables_alone(folder: Path) -> Iterator[None]:
-    """Nobody else writes tables meanwhile: of shards that end at one time, the last one knows the runs of all."""
+    """Lock the tables: of shards that end at one time, the last one knows the runs of all."""
     lock = _open_lock(folder / TABLES_LOCK)
     try:
         while not locked(lock):
@@ -79,7 +79,7 @@ def _open_lock(path: Path) -> int:
 
 
 def _remove_parts(folder: Path) -> None:
-    """Half-written tables of killed sweeps."""
+    """Remove half-written tables of killed sweeps."""
     for part in folder.glob(f"{PART}*"):
         with suppress(OSError):
             if time.time() - part.stat().st_mtime > STALE:
@@ -87,5 +87,5 @@ def _remove_parts(folder: Path) -> None:
 
 
 def write_facts(folder: Path, found: Mapping[str, Any]) -> None:
-    """sweep.json: what was swept, by which program, and how far it is."""
+    """Write sweep.json: swept keys, program versions and progress."""
     write_text(folder / FACTS, json.dumps(found, indent=2, ensure_ascii=False) + "\n")

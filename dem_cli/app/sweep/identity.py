@@ -1,4 +1,4 @@
-"""Identity of a run, which tells whether two are the same: the case, the files that it names, and the program."""
+"""Identity of a run for comparing runs: the case, its files, and the program."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ NAME_DIGITS = 12  # of a name: two of a million runs meet with a chance of one i
 
 @cache
 def program() -> str:
-    """Versions of everything that computes, and the sources of this package: an edited solver is another program."""
+    """Return versions of everything that computes, with a hash of this package's sources."""
     return " ".join([*(f"{name} {version}" for name, version in provenance().items()), hash_of_sources(PACKAGE)])
 
 
 def hash_of_sources(package: Path) -> str:
-    """A short hash of all Python files below a folder, by their names and what they hold."""
+    """Hash all Python files below a folder, by name and content."""
     digest = hashlib.sha256()
     for source in sorted(package.rglob("*.py")):
         digest.update(f"{source.relative_to(package).as_posix()}\n".encode())
@@ -33,7 +33,7 @@ def hash_of_sources(package: Path) -> str:
 
 
 def facts(case: Case, text: str) -> dict[str, str]:
-    """What must be the same for runs to be comparable, in words for users. text: the effective case."""
+    """Return what must be the same for runs to be comparable, in words for users. text: the effective case."""
     drawn = _digest(case.structure)
     return {
         "the case": hashlib.sha256(text.encode()).hexdigest(),
@@ -44,12 +44,12 @@ def facts(case: Case, text: str) -> dict[str, str]:
 
 
 def _digest(tables: Iterable[Any]) -> str:
-    """Of all files that tables name."""
+    """Hash all files that tables name."""
     named = [getattr(each, "file", None) for table in tables for each in (table, getattr(table, "outline", None))]
     files = [Path(file) for file in named if file]
     return hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in files)).hexdigest()
 
 
 def name_of(found: Mapping[str, str]) -> str:
-    """A short name for a run with these facts: the same for the same run, today and on another machine."""
+    """Return a short name for a run with these facts: the same for the same run, on any machine."""
     return hashlib.sha256("\n".join(found.values()).encode()).hexdigest()[:NAME_DIGITS]

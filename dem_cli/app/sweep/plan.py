@@ -1,4 +1,4 @@
-"""The runs of a sweep: from the [sweep] of a case to the changes of each run.
+"""Plan the runs of a sweep: from the [sweep] of a case to the changes of each run.
 
 A plan is the rows of [[sweep.run]] (or one empty row), each combined with every point of the grid (or with the
 lists side by side), each of those with every point of the Latin hypercube. Keys come in the order of the file.
@@ -26,7 +26,7 @@ LEAVE_OUT = Override("sweep", ("sweep",), None)  # a run is one case
 
 
 class KeyChange(NamedTuple):
-    """One key of one run: as a column of the table, and what it does to the case."""
+    """Change of one key in one run: its column in the table, and its overrides."""
 
     key: str
     value: Any
@@ -35,32 +35,32 @@ class KeyChange(NamedTuple):
 
 
 class SweepRun(NamedTuple):
-    """What a run changes, in the order in which it is applied."""
+    """Run of a sweep with its changes in order."""
 
     changes: tuple[KeyChange, ...]
     sampled: bool  # whether anything of it was drawn
 
     @property
     def values(self) -> dict[str, Any]:
-        """Value by key."""
+        """Values by key."""
         return {change.key: change.value for change in self.changes}
 
     @property
     def overrides(self) -> tuple[Override, ...]:
-        """All changes of the case; bundles first, so that single keys may change what a bundle brought."""
+        """All changes of the case; bundles first, so that single keys may override them."""
         by_size = sorted(self.changes, key=lambda change: not change.bundled)
         return (*(override for change in by_size for override in change.overrides), LEAVE_OUT)
 
 
 class SweepPlan(NamedTuple):
-    """All runs; `keys` are the columns that tell them apart."""
+    """Plan of a sweep: all runs; `keys` are the columns that distinguish them."""
 
     keys: tuple[str, ...]
     runs: tuple[SweepRun, ...]
 
 
 def plan_of(table: Sweep, seed: int) -> SweepPlan:
-    """The runs that a [sweep] asks for. Raises CaseError, by key, where it asks for something impossible.
+    """Plan the runs of a [sweep]. Raises CaseError, by key, for an impossible request.
 
     seed: of whatever is drawn.
     """
@@ -87,7 +87,7 @@ def plan_of(table: Sweep, seed: int) -> SweepPlan:
 
 
 def show_value(value: Any) -> str:
-    """A value as the cell of a table."""
+    """Format a value as a cell of a table."""
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
 
 
@@ -95,7 +95,7 @@ Axes = dict[str, list[KeyChange]]
 
 
 def _check_number(table: Sweep, lengths: Sequence[int]) -> None:
-    """Raises CaseError where there would be too many runs. lengths: of the lists of values."""
+    """Raise CaseError where there would be too many runs. lengths: of the lists of values."""
     several = max(lengths, default=1) if table.zip else prod(lengths)
     count = max(len(table.run), 1) * (table.samples or 1) * several
     if count > MOST_RUNS:
@@ -103,7 +103,7 @@ def _check_number(table: Sweep, lengths: Sequence[int]) -> None:
 
 
 def _check_order(runs: Sequence[SweepRun]) -> None:
-    """Raises CaseError where one change of a run undoes another, so that the table would not say what was run."""
+    """Raise CaseError where one change of a run overwrites another, which would make the table wrong."""
     seen = set()
     for run in runs:
         for bundled in (True, False):
@@ -119,7 +119,7 @@ def _check_order(runs: Sequence[SweepRun]) -> None:
 
 
 def _axes(table: Sweep) -> tuple[Axes, dict[str, tuple[KeyPath, Mapping[str, Any]]]]:
-    """Values of the keys of the grid, and the distributions of those that are drawn."""
+    """Return the values of the keys of the grid, and the distributions of the sampled ones."""
     axes: Axes = {}
     samples = {}
     found: dict[str, tuple[KeyPath, bool, Sequence[Any]]] = {}
@@ -149,7 +149,7 @@ def _axes(table: Sweep) -> tuple[Axes, dict[str, tuple[KeyPath, Mapping[str, Any
 
 
 def _leaves(path: KeyPath, value: Mapping[str, Any]) -> Iterator[tuple[KeyPath, Any]]:
-    """Keys and values of nested tables: joints.dry.friction = [...] without quotes is a table of tables."""
+    """Yield keys and values of nested tables: joints.dry.friction = [...] without quotes is a table of tables."""
     for key, item in value.items():
         if isinstance(item, Mapping) and not item.keys() & (QUANTILES.keys() | EVEN_KEYS):
             yield from _leaves((*path, key), item)
@@ -158,7 +158,7 @@ def _leaves(path: KeyPath, value: Mapping[str, Any]) -> Iterator[tuple[KeyPath, 
 
 
 def _row(table: Sweep, number: int, row: Mapping[str, Any]) -> tuple[KeyChange, ...]:
-    """The changes of a [[sweep.run]]."""
+    """Return the changes of a [[sweep.run]]."""
     changes = []
     for path, value in _flat(("sweep", "run", number), row):
         key = dotted(path[3:]) if len(path) > 4 else str(path[3])
@@ -167,7 +167,7 @@ def _row(table: Sweep, number: int, row: Mapping[str, Any]) -> tuple[KeyChange, 
 
 
 def _flat(path: KeyPath, value: Mapping[str, Any]) -> Iterator[tuple[KeyPath, Any]]:
-    """As _leaves, for single values: a table that is no table of tables is a value."""
+    """Yield keys and single values of nested tables: a table that is no table of tables is a value."""
     for key, item in value.items():
         if isinstance(item, Mapping) and "." not in key and any(isinstance(v, Mapping) for v in item.values()):
             yield from _flat((*path, key), item)
@@ -176,14 +176,14 @@ def _flat(path: KeyPath, value: Mapping[str, Any]) -> Iterator[tuple[KeyPath, An
 
 
 def _change(table: Sweep, key: str, value: Any, path: KeyPath) -> KeyChange:
-    """A key takes a value; the name of an axis of bundles takes that bundle."""
+    """Create the change of a key to a value; for an axis of bundles, all changes of that bundle."""
     if key in table.bundle:
         return _bundled(table, key, value, path)
     return KeyChange(key, _plain(value), (_override(key, value, path),))
 
 
 def _bundled(table: Sweep, axis: str, name: Any, path: KeyPath) -> KeyChange:
-    """All changes of a bundle."""
+    """Create all changes of a bundle."""
     bundles = table.bundle[axis]
     if not isinstance(name, str) or name not in bundles:
         raise _wrong(path, unknown_name("bundle", name, list(bundles)))
@@ -193,7 +193,7 @@ def _bundled(table: Sweep, axis: str, name: Any, path: KeyPath) -> KeyChange:
 
 
 def _override(key: str, value: Any, path: KeyPath) -> Override:
-    """The change of one key. Raises CaseError where it is none; where it leads is checked with the case."""
+    """Create the override of one key. Raises CaseError for an invalid one; its path is checked with the case."""
     found = key_path(key)
     if not found:
         raise _wrong(path, f"'{key}' is not a key of a case, such as joints.dry.friction or structure.0.courses")
@@ -203,7 +203,7 @@ def _override(key: str, value: Any, path: KeyPath) -> Override:
 
 
 def _points(axes: Axes, side_by_side: bool) -> Iterator[tuple[KeyChange, ...]]:
-    """All combinations, the last key changing fastest, or the lists side by side."""
+    """Yield all combinations, the last key changing fastest, or the lists in parallel."""
     if not side_by_side:
         yield from product(*axes.values())
         return
@@ -216,7 +216,7 @@ def _points(axes: Axes, side_by_side: bool) -> Iterator[tuple[KeyChange, ...]]:
 
 def _drawn_points(samples: Mapping[str, tuple[KeyPath, Mapping[str, Any]]], count: int | None,
                   seed: int) -> list[tuple[KeyChange, ...]]:  # fmt: skip
-    """The points of the Latin hypercube; one empty point where nothing is drawn."""
+    """Return the points of the Latin hypercube; one empty point where nothing is sampled."""
     if not samples or count is None:
         return [()]
     unit = latin_hypercube(len(samples), count, seed)
@@ -228,7 +228,7 @@ def _drawn_points(samples: Mapping[str, tuple[KeyPath, Mapping[str, Any]]], coun
 
 
 def _plain(value: Any) -> Any:
-    """As TOML gives it: lists, not tuples."""
+    """Convert tuples to lists, as in TOML."""
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]
     return {key: _plain(item) for key, item in value.items()} if isinstance(value, Mapping) else value

@@ -1,4 +1,4 @@
-"""Process pool of this machine: what kills a process does not stop the others, and nobody outlives the parent.
+"""Process pool of this machine: a killed process does not stop the others, and none outlives the parent.
 
 A pipe to each process and one item at a time: no threads, no shared locks, so that a process may die at any moment, it
 is known what it was doing, and an interrupt finds the parent in a wait of its own. Items and results go through it as
@@ -31,13 +31,13 @@ ASK = 0.2  # s between two looks at an interrupt
 
 
 class WorkerDeath:
-    """Death of a worker process in place of a result: it died, alone and for the second time."""
+    """Death of a worker process in place of a result: the item killed it twice, the second time alone."""
 
 
 def each_done(
     function: Callable[[Item], Result], items: Sequence[Item], jobs: int, first_alone: bool = False
 ) -> Iterator[tuple[int, Result | WorkerDeath]]:
-    """Number and result of each item as they come; one process: in this one, in order.
+    """Yield number and result of each item as they finish; with one process, in this one and in order.
 
     function must be importable, items and results picklable. An item whose process died is done again at the end,
     alone in a new process; one that kills that one as well is a `WorkerDeath`.
@@ -68,7 +68,7 @@ class _Task(NamedTuple):
 
 
 class _Answer(NamedTuple):
-    """What a process sends back."""
+    """Result or error that a process sends back."""
 
     result: Any
     error: Exception | None
@@ -82,7 +82,7 @@ class _Answer(NamedTuple):
 def _answers(
     function: Callable[..., Any], tasks: Sequence[_Task], jobs: int, first_alone: bool = False
 ) -> Iterator[tuple[_Task, _Answer | None]]:
-    """Answers as they come; None where the process died."""
+    """Yield answers as they come; None where the process died."""
     waiting, width = deque(tasks), 1 if first_alone else jobs
     with _Crew(function) as crew:
         crew.hand_out(waiting, width)
@@ -95,7 +95,7 @@ def _answers(
 
 
 class _Worker:
-    """A fresh process (a fork would copy threads that hold locks), and what it is doing."""
+    """Fresh worker process (a fork would copy threads that hold locks), and its current task."""
 
     def __init__(self, function: Callable[..., Any], temporary: str):
         context = multiprocessing.get_context("spawn")
@@ -107,14 +107,14 @@ class _Worker:
         self.task: _Task | None = None
 
     def give(self, task: _Task) -> None:
-        """The next task; that the process died is found when it is asked for the answer."""
+        """Send the next task; a dead process is found when its answer is read."""
         self.task = task
         with suppress(OSError):
             self.pipe.send(task.item)
 
 
 class _Crew:
-    """All processes; on leaving, those still working are told to stop, and ended if they do not.
+    """All worker processes; on leaving, those still working are told to stop, and ended if they do not.
 
     Their temporary files are in a folder of ours: who is ended cannot remove them.
     """
@@ -128,7 +128,7 @@ class _Crew:
         return [worker for worker in self.workers if worker.task is not None]
 
     def hand_out(self, waiting: deque[_Task], width: int) -> None:
-        """A task for everybody who has none."""
+        """Give a task to every idle worker."""
         while waiting and len(self.busy()) < width:
             idle = [worker for worker in self.workers if worker.task is None]
             if not idle:
@@ -137,7 +137,7 @@ class _Crew:
             idle[0].give(waiting.popleft())
 
     def answers(self) -> list[tuple[_Task, _Answer | None]]:
-        """What came within a short wait."""
+        """Collect the answers within a short wait."""
         busy, found = self.busy(), []
         ready = wait_for([worker.pipe for worker in busy], ASK)
         for worker in busy:
@@ -155,7 +155,7 @@ class _Crew:
         return self
 
     def __exit__(self, kind: type | None, *rest: Any) -> None:
-        """A caller that stops asking does not wait for what still runs."""
+        """Close the pool; a caller that stops early does not wait for running items."""
         for worker in self.workers:
             worker.pipe.close()  # who has nothing to do leaves
             if kind is not None:
@@ -165,7 +165,7 @@ class _Crew:
 
 
 def _ended(workers: Sequence[_Worker]) -> None:
-    """Processes that leave, with a time limit."""
+    """Join or end the processes within a time limit."""
     deadline = time.monotonic() + GRACE
     for worker in workers:
         worker.process.join(max(0.0, deadline - time.monotonic()))
@@ -176,7 +176,7 @@ def _ended(workers: Sequence[_Worker]) -> None:
 
 @contextmanager
 def _no_interrupts_for_children() -> Iterator[None]:
-    """Ctrl-C in a terminal comes to all processes and is the parent's to handle; a child that starts has it blocked."""
+    """Block Ctrl-C in child processes while they start; the parent handles it."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -188,7 +188,7 @@ def _no_interrupts_for_children() -> Iterator[None]:
 
 
 def _work(pipe: Connection, function: Callable[..., Any], temporary: str) -> None:
-    """What a process does: one item after the other, until there are no more or it is told to stop."""
+    """Process items one after the other, until there are no more or the parent stops it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     tempfile.tempdir = temporary
     parent = multiprocessing.parent_process()
@@ -205,7 +205,7 @@ def _work(pipe: Connection, function: Callable[..., Any], temporary: str) -> Non
 
 
 def _answered(function: Callable[..., Any], item: Any) -> bytes:
-    """What becomes of an item, in a form that goes from process to process."""
+    """Process an item; returns its result or error in pickled form."""
     try:
         answer = pickle.dumps(_Answer(function(item), None))
     except Exception as error:
@@ -216,7 +216,7 @@ def _answered(function: Callable[..., Any], item: Any) -> bytes:
 
 
 def _of_error(error: Exception) -> bytes:
-    """An error as an answer; some can be sent and not be received."""
+    """Pickle an error as an answer; some can be sent but not received."""
     try:
         answer = pickle.dumps(_Answer(None, error))
         pickle.loads(answer)

@@ -1,4 +1,4 @@
-"""All runs of a sweep, each in a folder of its own: what is there is not done again, what fails stops nobody."""
+"""Run all runs of a sweep, each in its own folder: finished ones are not repeated, failures stop no other."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Summary = Mapping[str, Any]
 
 
 class SweepJob(NamedTuple):
-    """Job of a sweep: all that a process elsewhere needs to know of a run."""
+    """Job of a sweep: everything that another process needs for a run."""
 
     id: str
     path: str  # of the case file, for messages and records beside it
@@ -38,7 +38,7 @@ class SweepJob(NamedTuple):
 
 
 class PlannedSweep(NamedTuple):
-    """A sweep that can be done: one job per row of its table; equal runs have equal jobs."""
+    """Planned sweep: one job per row of its table; equal runs have equal jobs."""
 
     plan: SweepPlan
     jobs: tuple[SweepJob | None, ...]  # None: the changes of this run make no valid case
@@ -47,8 +47,10 @@ class PlannedSweep(NamedTuple):
 
 
 def prepared(loaded: LoadedCase, plan: SweepPlan, folder: Path, given: Sequence[Override], light: bool) -> PlannedSweep:
-    """The jobs of a plan. Raises CaseError where a listed value is wrong in all runs that have it, UsageError where
-    one that is given is changed by all of them.
+    """Create the jobs of a plan.
+
+    Raises CaseError where a listed value is wrong in all runs that have it, UsageError where all runs change a given
+    override.
 
     given: overrides of the whole sweep. light: nothing is kept that the table of answers does not need.
     """
@@ -75,7 +77,7 @@ def prepared(loaded: LoadedCase, plan: SweepPlan, folder: Path, given: Sequence[
 
 
 def _in_vain(given: Sequence[Override], plan: SweepPlan) -> None:
-    """Raises UsageError where every run changes what the command line gave."""
+    """Raise UsageError where every run changes what the command line set."""
     swept = set.intersection(*({tuple(map(str, change.path)) for change in run.overrides} for run in plan.runs))
     for override in given:
         if tuple(map(str, override.path)) in swept - {("sweep",)}:
@@ -83,7 +85,7 @@ def _in_vain(given: Sequence[Override], plan: SweepPlan) -> None:
 
 
 def _buildable(loaded: LoadedCase, first: SweepJob | None) -> None:
-    """Raises CaseError where neither the first run nor the case itself has blocks to be solved: all would fail."""
+    """Raise CaseError where neither the first run nor the case itself has blocks: all would fail."""
     if first is None:
         return
     try:
@@ -93,7 +95,7 @@ def _buildable(loaded: LoadedCase, first: SweepJob | None) -> None:
 
 
 def _light(loaded: LoadedCase, plan: SweepPlan) -> tuple[Override, ...]:
-    """No snapshots, and no following of the collapse; a capacity curve goes as far as that says, and stays."""
+    """Return overrides without snapshots and collapse; a capacity curve keeps its extent."""
     swept = {override.path[:2] for run in plan.runs for override in run.overrides}
     other_kinds = swept & {("analysis",), ("analysis", "kind"), ("analysis", "control")}
     analysis = loaded.case.analysis
@@ -104,7 +106,7 @@ def _light(loaded: LoadedCase, plan: SweepPlan) -> tuple[Override, ...]:
 
 
 def _mistaken(runs: Sequence[SweepRun], wrong: Mapping[int, CaseError]) -> list[str]:
-    """Messages of listed values that are wrong wherever they occur, or of everything, if all is wrong."""
+    """Return messages for listed values that are wrong in every run, or for all runs if all are wrong."""
     if len(wrong) == len(runs):
         return [str(error) for error in wrong.values()]
     fine = {(c.key, repr(c.value)) for row, run in enumerate(runs) if row not in wrong for c in run.changes}
@@ -116,7 +118,7 @@ def _mistaken(runs: Sequence[SweepRun], wrong: Mapping[int, CaseError]) -> list[
 
 
 def _base(loaded: LoadedCase, plan: SweepPlan) -> dict[str, Any]:
-    """What the file says of keys that not every run changes."""
+    """Return the values of the file for keys that not every run changes."""
     found = {}
     for key in plan.keys:
         if all(key in run.values for run in plan.runs):
@@ -128,7 +130,7 @@ def _base(loaded: LoadedCase, plan: SweepPlan) -> dict[str, Any]:
 
 
 def finished(sweep: PlannedSweep) -> dict[str, Summary]:
-    """Summaries, by name of the run, that are there already."""
+    """Return existing summaries by name of the run."""
     found: dict[str, Summary] = {}
     for job in sweep.jobs:
         if job is not None and job.id not in found:
@@ -139,7 +141,7 @@ def finished(sweep: PlannedSweep) -> dict[str, Summary]:
 
 
 def summary_in(folder: Path) -> Summary | None:
-    """The summary of a run that came to its end, be it failure."""
+    """Read the summary of a run that ended, even by failure."""
     try:
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
@@ -149,7 +151,7 @@ def summary_in(folder: Path) -> Summary | None:
 
 
 def tidy(folder: Path) -> None:
-    """Remove what killed runs left in the folder of runs."""
+    """Remove leftovers of killed runs in the folder of runs."""
     runs = folder / RUNS
     for entry in os.scandir(runs) if runs.is_dir() else ():
         if entry.name.startswith(".") and abandoned(Path(entry.path)):
@@ -162,7 +164,7 @@ Spread = Callable[
 
 
 def carried_out(sweep: PlannedSweep, known: Mapping[str, Summary], spread: Spread) -> Iterator[tuple[str, Summary]]:
-    """Name and summary of each run as it ends; `known` ones are not done again."""
+    """Yield name and summary of each run as it ends; `known` ones are not repeated."""
     left = list({job.id: job for job in sweep.jobs if job is not None and job.id not in known}.values())
     for number, summary in spread(left):
         if isinstance(summary, WorkerDeath):
@@ -171,7 +173,7 @@ def carried_out(sweep: PlannedSweep, known: Mapping[str, Summary], spread: Sprea
 
 
 def failure(job: SweepJob, reason: str, trace: str | None = None) -> Summary:
-    """The record of a run that could not be done, left in its folder so that it is not tried again.
+    """Record a failed run in its folder, so that it is not repeated.
 
     Raises OutputError.
     """
@@ -191,5 +193,5 @@ def failure(job: SweepJob, reason: str, trace: str | None = None) -> Summary:
 
 
 def solved(summary: Summary) -> bool:
-    """Whether a run has an answer."""
+    """Test whether a run has an answer."""
     return not str(summary["status"]).startswith((FAILED, "not converged", WAITING))

@@ -1,4 +1,4 @@
-"""The table of a sweep: one row per run, in the order of the plan, with every digit and no time of day.
+"""Table of a sweep: one row per run, in the order of the plan, exact and without time of day.
 
 The same runs give the same bytes, however often they were interrupted and wherever they ran.
 """
@@ -24,7 +24,7 @@ Row = dict[str, Any]
 
 
 def rows(sweep: PlannedSweep, known: Mapping[str, Summary]) -> list[Row]:
-    """A row per run: `run`, the swept keys, `status`, `reason`, then the numbers and words of the summary."""
+    """Create a row per run: `run`, the swept keys, `status`, `reason`, then numbers and text of the summary."""
     found = []
     for number, (run, job) in enumerate(zip(sweep.plan.runs, sweep.jobs, strict=True)):
         if job is None:
@@ -44,7 +44,7 @@ def rows(sweep: PlannedSweep, known: Mapping[str, Summary]) -> list[Row]:
 
 
 def _gave_up(summary: Summary) -> str:
-    """Why a run did not converge; it is the last of its warnings."""
+    """Return the reason why a run did not converge, the last of its warnings."""
     warnings = summary.get("warnings")
     if not isinstance(warnings, list) or not warnings:
         return ""
@@ -52,7 +52,7 @@ def _gave_up(summary: Summary) -> str:
 
 
 def answers(summary: Summary) -> Row:
-    """Numbers and words of a summary by their path, pairs of numbers as two; no lists but `warnings`, no times."""
+    """Flatten a summary to numbers and text by path, pairs of numbers as two; no lists but `warnings`, no times."""
     found: Row = {}
 
     def walk(path: str, value: Any) -> None:
@@ -75,7 +75,7 @@ def answers(summary: Summary) -> Row:
 
 
 def columns(table: Sequence[Row], keys: Sequence[str]) -> list[str]:
-    """Every column, in the order of first appearance."""
+    """Return every column, in the order of first appearance."""
     wanted = dict.fromkeys(["run", *keys, *IDENTITY_COLUMNS[1:]])
     for row in table:
         wanted |= dict.fromkeys(row)
@@ -83,7 +83,7 @@ def columns(table: Sequence[Row], keys: Sequence[str]) -> list[str]:
 
 
 def write(folder: Path, table: Sequence[Row], keys: Sequence[str]) -> None:
-    """sweep.csv and sweep.sqlite (table `runs`), each whole or as it was. Raises OutputError."""
+    """Write sweep.csv and sweep.sqlite (table `runs`), each atomically. Raises OutputError."""
     names = columns(table, keys)
     write_csv(folder, table, names)
     with whole(folder / SQLITE) as part:
@@ -91,7 +91,7 @@ def write(folder: Path, table: Sequence[Row], keys: Sequence[str]) -> None:
 
 
 def write_csv(folder: Path, table: Sequence[Row], names: Sequence[str]) -> None:
-    """Only sweep.csv, for those who look while runs go on."""
+    """Write only sweep.csv, while runs go on."""
     with whole(folder / CSV) as part, part.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(map(cell, names))
@@ -117,7 +117,7 @@ def _write_sqlite(path: Path, table: Sequence[Row], names: Sequence[str]) -> Non
 
 
 def _different(names: Sequence[str]) -> list[str]:
-    """SQLite takes "Top" and "top" for one column: the second gets a number."""
+    """Make column names unique for SQLite, which takes "Top" and "top" for one column."""
     seen: dict[str, int] = {}
     found = []
     for name in names:

@@ -1,1 +1,1 @@
-"""`dem verify`: which cases have a reference, how near they come to it, and the page that says so."""
+"""Verify cases against their references, and write the page of results."""

@@ -1,4 +1,4 @@
-"""Cases with a [reference]: all that are named, and all in folders that are named."""
+"""Select cases with a [reference]: named files, and all in named folders."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ APART = "inference"  # a shelf that proves nothing: counted by itself, in no sum
 
 
 class CaseSelection(NamedTuple):
-    """Selected cases: what there is to do, and what was left out."""
+    """Selected cases, and those left out."""
 
     cases: list[Path]
     without: list[Path]  # cases without [reference]
 
 
 def find(paths: Sequence[Path], pattern: str = "", shelves: Sequence[str] = ()) -> CaseSelection:
-    """Case files with a [reference] whose path matches and which have one on the shelves; every file once.
+    """Find case files with a [reference] whose path matches, on given shelves; every file once.
 
     pattern: a part of the path, with wildcards as in a shell. shelves: values of SHELVES; none: all.
     A file that is no TOML is among them: it fails. Raises UsageError for a path that does not exist.
@@ -46,7 +46,7 @@ def find(paths: Sequence[Path], pattern: str = "", shelves: Sequence[str] = ()) 
 
 
 def files_at(path: Path) -> list[Path]:
-    """A file itself, or all TOML files below a folder, by name."""
+    """Return a file itself, or all TOML files below a folder, by name."""
     if path.is_dir():
         return sorted(path.rglob("*.toml"))
     if not path.exists():
@@ -55,7 +55,7 @@ def files_at(path: Path) -> list[Path]:
 
 
 def kinds_of(path: Path) -> list[str]:
-    """Kinds of the references of a case as they are written; none where it has none, `?` where it cannot be read."""
+    """Return the kinds of the references of a case; empty where it has none, `?` where it cannot be read."""
     try:
         table = parse_toml(path, read_text(path)).get("reference", [])
     except DemError:
@@ -65,6 +65,6 @@ def kinds_of(path: Path) -> list[str]:
 
 
 def longest_first(cases: Sequence[Path], cost: Callable[[Path], float | None]) -> list[Path]:
-    """Cases whose cost nobody knows first, then from the dearest to the cheapest: no long one is left for the end."""
+    """Sort cases of unknown cost first, then from the dearest to the cheapest, for parallel runs."""
     costs = {case: cost(case) for case in cases}
     return sorted(cases, key=lambda case: (costs[case] is not None, -(costs[case] or 0.0)))

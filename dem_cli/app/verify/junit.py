@@ -1,4 +1,4 @@
-"""Verdicts as JUnit XML, which continuous integration shows as tests."""
+"""Write verdicts as JUnit XML, which continuous integration shows as tests."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ NOT_SOLVED = "not solved"
 
 
 def junit(records: Iterable[Record]) -> str:
-    """A suite for each shelf, a test for each reference; known misses are skipped tests, unsolved cases errors."""
+    """Create a suite for each shelf, a test for each reference; known misses are skipped, unsolved cases errors."""
     root = ET.Element("testsuites", name="dem verify")
     suites: dict[str, ET.Element] = {}
     for record in records:
@@ -45,5 +45,5 @@ def _test(root: ET.Element, suites: dict[str, ET.Element], shelf: str, case: str
 
 
 def _clean(text: str) -> str:
-    """Without control characters, which XML cannot hold."""
+    """Replace control characters, which XML does not allow."""
     return "".join(letter if letter.isprintable() or letter in "\n\t" else "?" for letter in text)

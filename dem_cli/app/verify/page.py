@@ -1,4 +1,4 @@
-"""docs/verification.md: every case with a known answer, ours beside it. Made from the records alone."""
+"""Write docs/verification.md: every case with a known answer and the computed one, from the records alone."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ RULE_TITLES = {kind: f"**{kind}** ({SHELVES[kind]})" for kind in RULES}
 
 
 def page(records: Iterable[Record], version: str) -> str:
-    """The page as Markdown. Paths of cases are taken as seen from the page."""
+    """Create the page as Markdown. Paths of cases are relative to the page."""
     records = sorted(records, key=lambda record: record["case"])
     rules = [f"* {RULE_TITLES[kind]}: {rule}." for kind, rule in RULES.items()]
     lines = [INTRO + "\n".join(rules), "", *_summary(records), ""]
@@ -62,7 +62,7 @@ def page(records: Iterable[Record], version: str) -> str:
 
 
 def _summary(records: Sequence[Record]) -> list[str]:
-    """Counts, and the worst errors, by shelf."""
+    """Summarise counts and the worst errors, by shelf."""
     rows = []
     for shelf in ABOUT:
         of_shelf = on_shelves((r for r in records if "error" not in r), [shelf])
@@ -81,7 +81,7 @@ def _summary(records: Sequence[Record]) -> list[str]:
 
 
 def _of_inference(records: Sequence[Record]) -> list[str]:
-    """How many references there are that prove nothing."""
+    """Count the references of kind "inference", which prove nothing."""
     found = counts(apart(records)[1])
     link = f"[arithmetic of inference](#{TITLES[APART].lower().replace(' ', '-')})"
     return [f"Not counted: {found['references']} references of {link}."] if found["references"] else []
@@ -110,7 +110,7 @@ def _answer(answer: dict[str, Any]) -> list[str]:
 
 
 def _sources(records: Sequence[Record]) -> list[str]:
-    """Where the values come from, and why some are missed."""
+    """List the sources of the values, and the reasons of missed ones."""
     lines = ["Sources:", ""]
     for record in records:
         said = [answer["source"] for answer in record["references"] if answer["source"]]
@@ -138,12 +138,12 @@ def _link(record: Record) -> str:
 
 
 def _cell(text: str) -> str:
-    """Text that does not end a cell of a table."""
+    """Escape text for a cell of a table."""
     return " ".join(text.split()).replace("|", "\\|")
 
 
 def _percent(value: float, signed: bool = True) -> str:
-    """A share in per cent: two digits, never more than three places."""
+    """Format a share in per cent with two digits."""
     size = abs(100.0 * value)
     places = 0 if size >= 99.5 else 1 if size >= 9.95 else 2 if size >= 0.0995 else 3
     text = f"{100.0 * value:+.{places}f}" if signed else f"{size:.{places}f}"

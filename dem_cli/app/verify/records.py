@@ -1,4 +1,4 @@
-"""Verification records: what is kept of a verified case, and of all of them in verification.json."""
+"""Verification records of solved cases, stored in verification.json."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ VERDICT_STATES = ("passed", "missed", "failed", "met")  # of a reference; missed
 
 
 def record(path: Path, title: str, summary: Mapping[str, Any], references: Sequence[Any], seconds: float) -> Record:
-    """A case that was solved: file, title, kind of analysis, status, seconds, and one dict for each reference.
+    """Create the record of a solved case: file, title, kind, status, seconds, and one dict for each reference.
 
     Those are the verdicts of results/output/reference.py with `source`, `error`, what was found less what was expected,
     and, where the tolerance is the case's own, the `reason` for it.
@@ -40,26 +40,26 @@ def record(path: Path, title: str, summary: Mapping[str, Any], references: Seque
 
 
 def _told(reference: Any) -> dict[str, str]:
-    """Words of a [reference] that the page prints."""
+    """Return the source and reason of a [reference] for the page."""
     own = reference.tolerance is not None or reference.relative is not None
     return {"source": reference.source} | ({"reason": reference.reason or "not said"} if own else {})
 
 
 def failed(path: Path, reason: str, bad: bool) -> Record:
-    """A case that could not be solved; bad: the case file is wrong."""
+    """Create the record of a case that could not be solved; bad: the case file is wrong."""
     kept = {"case": path.as_posix(), "title": path.stem, "error": reason, "bad": bad, "references": [], "seconds": 0.0}
     return kept | {"sha256": digest(path)}
 
 
 def state(answer: Mapping[str, Any]) -> str:
-    """One of STATES."""
+    """Return the state of a verdict, one of STATES."""
     if as_declared(answer):
         return "passed" if answer["passed"] else "missed"
     return "met" if answer["passed"] and "missed" in answer else "failed"
 
 
 def digest(path: Path) -> str:
-    """SHA-256 of what a case file says; comments and spaces do not count."""
+    """Hash the content of a case file (SHA-256) without comments and spaces."""
     try:
         said = json.dumps(parse_toml(path, read_text(path)), sort_keys=True, default=str)
     except DemError:
@@ -68,12 +68,12 @@ def digest(path: Path) -> str:
 
 
 def rounded(seconds: float) -> float:
-    """Two digits: more would change from run to run."""
+    """Round to two digits: more would change from run to run."""
     return float(f"{seconds:.2g}")
 
 
 def on_shelves(records: Iterable[Record], shelves: Sequence[str]) -> list[Record]:
-    """Records with no references but those of some shelves; none: all."""
+    """Return records with only the references of some shelves; none: all."""
     if not shelves:
         return list(records)
     wanted = [dict(r, references=[a for a in r["references"] if SHELVES[a["kind"]] in shelves]) for r in records]
@@ -81,7 +81,7 @@ def on_shelves(records: Iterable[Record], shelves: Sequence[str]) -> list[Record
 
 
 def apart(records: Iterable[Record]) -> tuple[list[Record], list[Record]]:
-    """Records with the references that say something about dem, and those with references on the shelf of inference."""
+    """Separate records with counted references from those on the shelf of inference."""
     records = list(records)
     of_inference = [record for record in on_shelves(records, [APART]) if record["references"]]
     others = on_shelves(records, [shelf for shelf in SHELVES.values() if shelf != APART])
@@ -89,7 +89,7 @@ def apart(records: Iterable[Record]) -> tuple[list[Record], list[Record]]:
 
 
 def counts(records: Iterable[Record]) -> dict[str, int]:
-    """How many cases and references there are, and how many references in each state; cases without an answer."""
+    """Count cases, references, references in each state, and unsolved cases."""
     records = list(records)
     states = [answer["state"] for record in records for answer in record["references"]]
     found = {"cases": len(records), "references": len(states)} | {name: states.count(name) for name in VERDICT_STATES}
@@ -97,18 +97,18 @@ def counts(records: Iterable[Record]) -> dict[str, int]:
 
 
 def all_well(records: Iterable[Record]) -> bool:
-    """Whether everything is as the cases say."""
+    """Test whether all references and cases are as declared."""
     found = counts(records)
     return not (found["failed"] or found["met"] or found["not solved"])
 
 
 def data_file(page: Path) -> Path:
-    """The JSON of a page."""
+    """Return the JSON file of a page."""
     return page.parent / "data" / f"{page.stem}.json"
 
 
 def load(file: Path) -> list[Record]:
-    """Records of an earlier `dem verify --write`, cases as seen from here; none where there is no such file."""
+    """Read the records of an earlier `dem verify --write`, with relative case paths; empty without a file."""
     if not file.is_file():
         return []
     try:
@@ -119,18 +119,18 @@ def load(file: Path) -> list[Record]:
 
 
 def dump(records: Iterable[Record], page: Path, version: str) -> str:
-    """JSON text of records, one per line, their cases as seen from the page."""
+    """Format records as JSON, one per line, with case paths relative to the page."""
     cases = sorted(({**r, "case": moved(r["case"], Path(), page.parent)} for r in records), key=lambda r: r["case"])
     lines = ",\n".join(json.dumps(case, ensure_ascii=False) for case in cases)
     return f'{{"version": {json.dumps(version)}, "cases": [\n{lines}\n]}}\n'
 
 
 def moved(path: str, before: Path, after: Path) -> str:
-    """A path relative to one folder as one relative to another."""
+    """Convert a path relative to one folder to one relative to another."""
     return Path(os.path.relpath(before / path, after)).as_posix()
 
 
 def merged(old: Iterable[Record], new: Iterable[Record]) -> list[Record]:
-    """The new records, and the old ones of other cases that still exist."""
+    """Merge new records with the old ones of other cases that still exist."""
     found = {r["case"]: r for r in old if Path(r["case"]).is_file()}
     return list((found | {r["case"]: r for r in new}).values())

@@ -1,4 +1,4 @@
-"""Verdicts in words: values, errors, what was allowed."""
+"""Format verdicts: values, errors, tolerances."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ VERDICTS = {"passed": "passed", "missed": "missed, as known", "failed": "FAILED"
 
 
 def shown(value: Any, digits: int = SHOWN_DIGITS) -> str:
-    """A number, word, truth or interval."""
+    """Format a number, text, truth value or interval."""
     if isinstance(value, bool) or value is None:
         return {True: "true", False: "false", None: "–"}[value]
     if isinstance(value, (list, tuple)):
@@ -20,26 +20,26 @@ def shown(value: Any, digits: int = SHOWN_DIGITS) -> str:
 
 
 def number(value: float, digits: int, sign: str = "") -> str:
-    """A number with so many digits, large ones written out; sign: "+" for one in any case."""
+    """Format a number with so many digits, large ones written out; sign: "+" to show it always."""
     text = f"{value:{sign}.{digits}g}"
     return (f"{float(text):{sign}.0f}" if "e+0" in text else text).replace("-", "−")
 
 
 def found(answer: Mapping[str, Any]) -> str:
-    """The value found; of a curve the largest of its loads where those of the reference are."""
+    """Format the value found; of a curve its largest load at the displacements of the reference."""
     value = answer["found"]
     return f"up to {shown(max(value))}" if "displacements" in answer and value else shown(value)
 
 
 def expected(answer: Mapping[str, Any]) -> str:
-    """The value expected; of a curve its peak and how many points it has."""
+    """Format the value expected; of a curve its peak and number of points."""
     if "displacements" in answer:
         return f"up to {shown(max(answer['value']), 6)} in {len(answer['value'])} points"
     return shown(answer["value"], 6)
 
 
 def off(answer: Mapping[str, Any]) -> str:
-    """How far off, in the unit of the quantity; "inside" an interval."""
+    """Format the error in the unit of the quantity; "inside" an interval."""
     value = answer["error"]
     if "displacements" in answer:
         return "–" if value is None else f"{number(value, 2)} on average"
@@ -52,7 +52,7 @@ def off(answer: Mapping[str, Any]) -> str:
 
 
 def share(answer: Mapping[str, Any]) -> float | None:
-    """How far off, over the expected value (of an interval: its nearer end); None where that says nothing."""
+    """Return the relative error (of an interval: over its nearer end); None where it is undefined."""
     value, expected = answer["error"], answer["value"]
     if "displacements" in answer:
         return None if value is None else value / max(expected)
@@ -62,12 +62,12 @@ def share(answer: Mapping[str, Any]) -> float | None:
 
 
 def allowed(answer: Mapping[str, Any]) -> str:
-    """The tolerance, in the unit of the quantity."""
+    """Format the tolerance, in the unit of the quantity."""
     return f"± {shown(answer['tolerance'], 2)}" if answer["tolerance"] else ""
 
 
 def judgement(answer: Mapping[str, Any]) -> str:
-    """A verdict in a sentence."""
+    """Format a verdict as a sentence."""
     if "problem" in answer:
         return str(answer["problem"])
     what = f"{answer['quantity']} is {found(answer)}, expected {expected(answer)} {allowed(answer)}"

@@ -1,1 +1,1 @@
-"""Tables of the case file that an analysis reads: no solver is imported here."""
+"""Tables of the case file that an analysis reads, kept free of solver imports."""

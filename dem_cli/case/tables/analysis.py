@@ -1,4 +1,4 @@
-"""[analysis] of the case file: one table per kind, and the contract of a kind."""
+"""Table [analysis] of the case file: one table per kind of analysis, and the contract of a kind."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Share = Annotated[float, Field(ge=0.0, le=0.2)]
 
 @dataclass(frozen=True)
 class Analysis:
-    """A registered analysis.
+    """Registered kind of analysis: its table, its solver and its documentation.
 
     run(case, model, observer, settings) -> Outcome, with `batch` besides where it consists of many runs; imported when
     called, so that listing kinds loads no solver.
@@ -29,7 +29,7 @@ class Analysis:
 
 
 class AnalysisBase(CaseModel):
-    """What every analysis accepts."""
+    """Keys that every analysis accepts."""
 
     kinematics: Literal["auto", "fixed", "large"] = Field(
         default="auto",
@@ -45,7 +45,7 @@ class GravityAnalysis(AnalysisBase):
 
 
 class LiveAnalysis(AnalysisBase):
-    """What analyses with a live load accept: what the multiplier acts on."""
+    """Keys of analyses with a live load that a load multiplier scales."""
 
     direction: Vector = Field(
         default=(1.0, 0.0),
@@ -192,7 +192,7 @@ class Perturbation(CaseModel):
 
 
 class ShakingAnalysis(CaseModel):
-    """What analyses of structures that are shaken accept."""
+    """Keys of analyses of structures under ground motion."""
 
     duration: Annotated[float, Field(le=LONGEST)] | None = Field(
         default=None, gt=0.0, description="time that is computed [s]; default: that of the motion", examples=[15.0]
@@ -231,7 +231,7 @@ class ShakingAnalysis(CaseModel):
 
     @property
     def kinematics(self) -> str:
-        """Geometry always moves."""
+        """Kinematics of time histories: always large displacements."""
         return "large"
 
 
@@ -300,12 +300,12 @@ class FragilityAnalysis(ShakingAnalysis):
 
     @property
     def levels(self) -> tuple[float, ...]:
-        """The intensities that were given; the ends of a range."""
+        """Intensities that were given, or the ends of the range."""
         return self.intensities or self.range[:2]
 
     @property
     def range(self) -> tuple[float, float, float]:
-        """Lowest, highest and resolution, of a case without intensities."""
+        """Lowest intensity, highest intensity and resolution of a case without a list of intensities."""
         assert self.lowest is not None
         assert self.highest is not None
         assert self.resolution is not None
@@ -313,7 +313,7 @@ class FragilityAnalysis(ShakingAnalysis):
 
     @property
     def bisects(self) -> bool:
-        """Whether only some of the runs are done."""
+        """Tell whether intensities are searched by bisection, so that only some of the runs are done."""
         return self.intensities is None or self.search == "bisection"
 
 

@@ -1,4 +1,4 @@
-"""[motion]: ground motion, how supports move. One table, or several [[motion]], which add up."""
+"""Table [motion]: ground motion of the supports. One table, or several [[motion]], which add up."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ PULSES = {"frequency": ("sine", "cosine", "half-sine", "ricker"), "duration": ("
 
 
 class MotionTable(CaseModel):
-    """What every kind of motion accepts."""
+    """Keys of every kind of ground motion."""
 
     direction: Vector = Field(
         default=(1.0, 0.0), description="of positive values, in 3D any in space; its length does not matter [-]"
@@ -118,12 +118,12 @@ class HarmonicTable(MotionTable):
 
     @property
     def _says_length(self) -> str:
-        """The key that says how long it is."""
+        """Key that sets the duration of the harmonic: duration or cycles."""
         return "duration" if self.cycles is None else "cycles"
 
     @property
     def length(self) -> float:
-        """How long it lasts [s]."""
+        """Duration of the harmonic motion [s]."""
         if self.cycles is not None:
             return self.cycles / self.frequency
         assert self.duration is not None
@@ -131,7 +131,7 @@ class HarmonicTable(MotionTable):
 
 
 class RecordTable(MotionTable):
-    """[motion] kind = "record": what was measured, or computed elsewhere."""
+    """[motion] kind = "record": a measured accelerogram, or one computed elsewhere."""
 
     kind: Literal["record"] = "record"
     file: Annotated[str, Field(min_length=1)] = Field(
@@ -185,12 +185,12 @@ class RecordTable(MotionTable):
 
     @property
     def baseline_order(self) -> int | None:
-        """Order of the polynomial to take out; None: nothing is taken out."""
+        """Order of the polynomial of the baseline correction; None: no correction."""
         return (1 if self.baseline else None) if isinstance(self.baseline, bool) else self.baseline
 
 
 class ArtificialTable(SpectrumTable, MotionTable):
-    """[motion] kind = "artificial": made to fit a response spectrum."""
+    """[motion] kind = "artificial": accelerograms generated to fit a response spectrum."""
 
     kind: Literal["artificial"] = "artificial"
     duration: Positive = Field(default=20.0, description="how long each record lasts [s]")
@@ -231,14 +231,14 @@ class ArtificialTable(SpectrumTable, MotionTable):
 
     @property
     def asked(self) -> ArtificialSuite:
-        """What its accelerograms are to be like."""
+        """Parameters of the artificial accelerograms to be generated."""
         from dem_cli.core.motion.synthetic import ArtificialSuite
 
         times = (self.duration, self.rise, self.plateau, self.time_step)
         return ArtificialSuite(self.target, *times, self.count, self.iterations)
 
     def judged(self, motions: Sequence[Motion]) -> list[Clause]:
-        """What each clause of Eurocode 8 says of its motions."""
+        """Check a suite of accelerograms against the clauses of Eurocode 8."""
         from dem_cli.core.motion.eurocode_suites import DAMPING, clauses
 
         known, strength = isinstance(self.spectrum, str) or self.damping == DAMPING, abs(self.scale)

@@ -1,4 +1,4 @@
-"""analysis.idealise and analysis.check: what a capacity curve is made into, and the demand it is checked against."""
+"""Tables analysis.idealise and analysis.check: bilinear capacity curve, and its check against a response spectrum."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""[damping] of time histories: what joints and blocks lose, beside friction."""
+"""Table [damping] of time histories: energy dissipation of joints and blocks, beside friction."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ class RayleighDamping(CaseModel):
 
     @property
     def of_mass(self) -> bool:
-        """Whether there is a part that is proportional to mass."""
+        """Tell whether Rayleigh damping has a part proportional to mass."""
         return self.frequencies is not None or not self.stiffness if self.mass is None else self.mass
 
     def coefficients(self) -> tuple[float, float]:
-        """a0 [1/s] of mass and a1 [s] of stiffness (Clough and Penzien, ch. 12)."""
+        """Rayleigh coefficients a0 [1/s] of mass and a1 [s] of stiffness (Clough and Penzien, ch. 12)."""
         if self.frequencies is not None:
             low, high = (2.0 * math.pi * f for f in self.frequencies)
             return 2.0 * self.ratio * low * high / (low + high), 2.0 * self.ratio / (low + high)

@@ -1,4 +1,4 @@
-"""Tables of case files that follow from declared parameters of laws, links and motions.
+"""Tables of case files generated from the declared parameters of laws, links and motions.
 
 A law says what its parameters are (declarations.py); here that becomes a strict table with the same names, types,
 limits, descriptions and examples, whose instances are such records too.
@@ -20,10 +20,10 @@ MADE: dict[type[Parameters], type[Any]] = {}  # the table of each class, made on
 
 
 class DeclaredTable(CaseModel):
-    """What every such table has: the relations that its declaration asks for."""
+    """Base class of tables generated from declared parameters, which checks the relations between keys."""
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Its fields are those of a table: it declares nothing for others."""
+        """Register no declaration: the fields of the subclass are those of a table."""
 
     @model_validator(mode="after")
     def _relations(self: Any) -> Any:
@@ -32,16 +32,16 @@ class DeclaredTable(CaseModel):
 
     @property
     def names_given(self) -> set[str]:
-        """Names of the keys that the case gives."""
+        """Names of the keys that the case gives explicitly."""
         return self.model_fields_set
 
     def with_values(self, **values: Any) -> Self:
-        """A copy with these values in place of its own, unchecked."""
+        """Return a copy of the table with some values replaced, unvalidated."""
         return self.model_copy(update=values)
 
 
 def table_of(declaring: type[Parameters]) -> type[Any]:
-    """The table of a case file with the parameters that a class declares; of the same name, and a subclass of it."""
+    """Create the table class of a case file from declared parameters; a subclass with the same name."""
     if declaring not in MADE:
         MADE[declaring] = _made(declaring)
     return MADE[declaring]
@@ -60,14 +60,14 @@ def _made(declaring: type[Parameters]) -> type[Any]:
 
 
 def _field(one: Parameter) -> tuple[Any, Any]:
-    """Annotation and field of a parameter."""
+    """Return annotation and field of a declared parameter."""
     options: dict[str, Any] = {**one.words, **one.limits.named}
     return _in_a_case(one.kind), Field(default=one.default, **options)
 
 
 @cache
 def _in_a_case(kind: Any) -> Any:
-    """An annotated type as a case file has it: records become tables, vectors have as many numbers as the case."""
+    """Convert an annotated type for a case file: records become tables, vectors get the length of the dimension."""
     origin, parts = get_origin(kind), get_args(kind)
     if isinstance(kind, type) and issubclass(kind, Parameters):
         return table_of(kind)
@@ -81,5 +81,5 @@ def _in_a_case(kind: Any) -> Any:
 
 
 def _limit(limit: Limits | SpaceLength) -> Any:
-    """The same limit as tables have it."""
+    """Convert a declared limit to a limit of a table field."""
     return VectorLength(*limit) if isinstance(limit, SpaceLength) else Field(**limit.named)

@@ -1,4 +1,4 @@
-"""[[initial]]: the initial state of blocks that start tilted, displaced or moving."""
+"""Table [[initial]]: initial state of blocks that start tilted, displaced or moving."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class InitialState(Selection):
 
     @property
     def turn(self) -> tuple[float, ...]:
-        """Turn of the tilt [rad]: counter-clockwise in the plane, in space axis times angle."""
+        """Rotation of the initial tilt [rad]: counter-clockwise in the plane, in space axis times angle."""
         if len(self.displacement) == 2:
             return (self.tilt,)
         length = math.hypot(*self.axis)
@@ -69,5 +69,5 @@ class InitialState(Selection):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What the blocks that it moves are called."""
+        """Names of the blocks that the initial state moves."""
         return self.blocks if self.blocks is not None else (self.selected or "",)

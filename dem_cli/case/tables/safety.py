@@ -1,4 +1,4 @@
-"""[analysis] with kind = "safety": how far a structure is from failure under given loads."""
+"""Table [analysis] with kind = "safety": how far a structure is from failure under given loads."""
 
 from __future__ import annotations
 
@@ -80,17 +80,17 @@ class SafetyAnalysis(LiveAnalysis):
 
     @property
     def of_strength(self) -> bool:
-        """Whether strengths are varied, not a key."""
+        """Tell whether the analysis varies the strengths instead of a key."""
         return self.vary == STRENGTH
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Least and largest value that is tried."""
+        """Least and largest value of the searched range."""
         return self.between or FACTORS
 
     @property
     def constant_load(self) -> float:
-        """Multiplier of the live load."""
+        """Constant multiplier of the live load during the search."""
         if self.load is not None:
             return self.load
         return 1.0 if self.pattern == "live" else 0.0

@@ -16,7 +16,7 @@ EC8_KEYS = ("soil", "ag")
 
 
 class SpectrumTable(CaseModel):
-    """What every table accepts that names a response spectrum."""
+    """Keys of every table that specifies a response spectrum."""
 
     spectrum: Literal["EC8-1", "EC8-2"] | Annotated[tuple[Period, ...], Field(min_length=2)] = Field(
         description="elastic spectrum of Eurocode 8, type 1 or 2, or a list of [period [s], acceleration [m/s2]]",
@@ -52,7 +52,7 @@ class SpectrumTable(CaseModel):
 
     @property
     def target(self) -> TargetSpectrum:
-        """The spectrum that it names."""
+        """Response spectrum given by name or as a list."""
         from dem_cli.core.motion.eurocode import eurocode, listed
 
         if isinstance(self.spectrum, str):

@@ -1,1 +1,1 @@
-"""Assembly of a model: blocks of a case into arrays, laid, checked, with their errors."""
+"""Assemble the blocks, joints and loads of a case to the arrays of a model, and check them."""

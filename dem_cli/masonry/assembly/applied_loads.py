@@ -1,4 +1,4 @@
-"""Applied loads: the forces at points that [[load]], [[pressure]] and [[fill]] of a case come to."""
+"""Convert the tables [[load]], [[pressure]] and [[fill]] of a case to forces at points."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def applied_loads(case: Case, model: Model) -> list[AppliedLoad]:
-    """All loads of a case, table by table. Raises CaseError where one acts on nothing."""
+    """Compute all applied loads of a case, table by table. Raises CaseError where one acts on nothing."""
     surfaces = Surfaces(model) if _need_surfaces(case) else None
     found, problems = list[AppliedLoad](), list[CaseProblem]()
     for key, resolve in (("load", _load), ("pressure", pressure), ("fill", fill)):
@@ -38,7 +38,7 @@ def _need_surfaces(case: Case) -> bool:
 
 
 def _load(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath, table: Load) -> AppliedLoad:
-    """Forces on one block, shared by several, or on what lies under them; with `inertia` as weights of masses."""
+    """Compute the forces of one [[load]] on given blocks or those under it; with `inertia` as weights of masses too."""
     found = _forces(model, surfaces, path, table)
     return found._replace(weights=-found.forces[:, -1]) if table.inertia else found
 

@@ -1,4 +1,4 @@
-"""Assembly: from a validated case to the arrays that the solvers see."""
+"""Assembly of a validated case to the arrays of a model."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ IMPERFECT = {2: imperfect, 3: imperfect_in_space}
 
 
 class Assembly(NamedTuple):
-    """A case in numbers, with the names needed to talk about it."""
+    """Assembled model of a case with its blocks and warnings."""
 
     model: Model
     blocks: tuple[Block, ...]  # in the order of the model
@@ -53,12 +53,12 @@ class Assembly(NamedTuple):
 
 
 def assemble(case: Case) -> Model:
-    """The model of a case alone; raises CaseError with every problem found on the way."""
+    """Assemble the model of a case; raises CaseError with every problem found on the way."""
     return assembly(case).model
 
 
 def assembly(case: Case) -> Assembly:
-    """Model, blocks and names of a case. Raises CaseError: impossible shapes, names twice, unknown blocks."""
+    """Assemble model, blocks and names of a case. Raises CaseError: impossible shapes, names twice, unknown blocks."""
     blocks, names = case_blocks(case)
     body = _bodies(case, blocks, names)
     selections = Selections(BlockNames(case, blocks, names, body.centroids))
@@ -81,7 +81,7 @@ def assembly(case: Case) -> Assembly:
 
 
 def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
-    """All blocks of a case, from the lowest up and from left to right, and the aliases {alias: block id}.
+    """Create all blocks of a case, sorted from the lowest up and from left to right, and aliases {alias: block id}.
 
     Raises CaseError: impossible shapes, names twice, no blocks.
     """
@@ -117,7 +117,7 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
 
 
 def _check_corners(blocks: Sequence[Block]) -> None:
-    """Raises ValueError where a generated block has no area: fewer than three corners that are not the same point."""
+    """Raise ValueError where a generated block has fewer than three distinct corners."""
     flat = [block.id for block in blocks if any(len(corners_of(part)) < 3 for part in block.parts)]
     if flat:
         more = f" (and {len(flat) - 1} more)" if len(flat) > 1 else ""
@@ -125,14 +125,14 @@ def _check_corners(blocks: Sequence[Block]) -> None:
 
 
 def joint_table(case: Case) -> tuple[tuple[str, ...], np.ndarray]:
-    """Names of the joints and which of them lies between two materials, (n_materials, n_materials) int64."""
+    """Return the joint names and the joint between two materials, (n_materials, n_materials) int64."""
     names = tuple(case.joints)
     table = [[names.index(case.joint_between(a, b)) for b in case.materials] for a in case.materials]
     return names, np.array(table, np.int64)
 
 
 def joints_in_heads(case: Case) -> np.ndarray:
-    """Which joint, by its number in the case, lies in the head joints of each; −1: nothing does, (n_named,) int64."""
+    """Return the head joint of each joint by its number in the case; −1: no head joint, (n_named,) int64."""
     numbers = {name: k for k, name in enumerate(case.joints)} | {NOTHING: -1}
     return np.array([numbers[table.head or name] for name, table in case.joints.items()], np.int64)
 
@@ -151,7 +151,7 @@ def _repeated_names(blocks: Sequence[Block]) -> list[CaseProblem]:
 
 
 def _foreign_materials(blocks: Sequence[Block], materials: Sequence[str]) -> Iterator[CaseProblem]:
-    """Materials that only a file names, which a structure took its blocks from."""
+    """Report materials of imported blocks that the case does not define."""
     found: dict[tuple[KeyPath, str], list[str]] = {}
     for block in blocks:
         if block.material not in materials:
@@ -162,7 +162,7 @@ def _foreign_materials(blocks: Sequence[Block], materials: Sequence[str]) -> Ite
 
 
 def _sorted(blocks: list[Block]) -> list[Block]:
-    """From the lowest up, then along x, in space also along y: neighbours get numbers close to each other."""
+    """Sort blocks from the lowest up, then along x and y, so that neighbours get close numbers."""
     corners = [corners_of(part) for block in blocks for part in block.parts]
     counts = [sum(len(corners_of(part)) for part in block.parts) for block in blocks]
     lows = np.minimum.reduceat(np.concatenate(corners), np.cumsum([0, *counts[:-1]]), axis=0)
@@ -173,7 +173,7 @@ def _sorted(blocks: list[Block]) -> list[Block]:
 
 
 def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Model:
-    """The model with its masses, still without loads; names: aliases of blocks."""
+    """Assemble the bodies of the model with their masses, without loads; names: aliases of blocks."""
     materials = list(case.materials)
     index = {name: k for k, name in enumerate(materials)}
     material = np.array([index[block.material] for block in blocks], np.int64)
@@ -200,7 +200,7 @@ def _bodies(case: Case, blocks: Sequence[Block], names: Mapping[str, str]) -> Mo
 
 
 def _pieces(case: Case, blocks: Sequence[Block]) -> np.ndarray:
-    """As Model.pieces; nothing where no stone can crack."""
+    """Return stone and joint of each piece of a cracked stone, as Model.pieces; empty where no stone can crack."""
     if not any(block.crack for block in blocks):
         return NO_PIECES
     joints = {name: k for k, name in enumerate(case.joints)}
@@ -209,7 +209,7 @@ def _pieces(case: Case, blocks: Sequence[Block]) -> np.ndarray:
 
 
 def _courses(case: Case, blocks: Sequence[Block]) -> np.ndarray:
-    """Course and row of each block, as Model.courses has them; empty where head joints are like others."""
+    """Return course and row of each block, as Model.courses; empty where head joints are like others."""
     if all(joint.head is None for joint in case.joints.values()) or not any(block.course for block in blocks):
         return NO_COURSES
     laid = [(block.path, block.course) for block in blocks]
@@ -221,7 +221,7 @@ def _courses(case: Case, blocks: Sequence[Block]) -> np.ndarray:
 
 
 def _with_modes(case: Case, model: Model) -> Model:
-    """With the modes of blocks that deform; nothing where none does."""
+    """Add the deformation modes of deformable blocks to the model."""
     tables = case.materials.values()
     if not any(table.strains for table in tables):
         return model
@@ -240,7 +240,7 @@ def _with_modes(case: Case, model: Model) -> Model:
 
 
 def _weighed(bodies: BodyArrays, blocks: Sequence[Block]) -> BodyArrays:
-    """With the masses of blocks that have one of their own, spread evenly over them."""
+    """Replace the masses of blocks that have a given one, spread evenly over their parts."""
     given = [i for i, block in enumerate(blocks) if block.mass is not None]
     if not given:
         return bodies
@@ -251,7 +251,7 @@ def _weighed(bodies: BodyArrays, blocks: Sequence[Block]) -> BodyArrays:
 
 
 def _with_loads(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Model:
-    """Dead loads: weight and dead applied loads. Live loads: by the pattern of the analysis, or zero."""
+    """Add dead loads (weight and dead applied loads) and the live loads of the analysis to the model."""
     d, dead = model.dimension, [load for load in loads if load.dead]
     pattern = getattr(case.analysis, "pattern", None)
     weight = np.zeros_like(model.dead_loads)
@@ -280,7 +280,7 @@ def _with_loads(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Model
 
 
 def _following(model: Model, dead: Sequence[AppliedLoad], live: Sequence[AppliedLoad]) -> FollowingLoads | None:
-    """Loads that go along with their blocks. Raises CaseError: on blocks that deform."""
+    """Collect the follower loads, which move with their blocks. Raises CaseError: on blocks that deform."""
     acting = [*((load, True) for load in dead), *((load, False) for load in live)]
     found = [(load, is_dead) for load, is_dead in acting if load.follows is not None]
     if not found:
@@ -297,7 +297,7 @@ def _following(model: Model, dead: Sequence[AppliedLoad], live: Sequence[Applied
 
 
 def _direction(case: Case) -> np.ndarray:
-    """The direction of the analysis as a unit vector, (d,)."""
+    """Return the load direction of the analysis as a unit vector, (d,)."""
     direction = np.array(case.analysis.direction, float)
     length = np.hypot.reduce(direction)
     if length == 0.0:
@@ -307,7 +307,7 @@ def _direction(case: Case) -> np.ndarray:
 
 
 def _quarter_turn(case: Case, dead: Sequence[AppliedLoad]) -> np.ndarray:
-    """What a table does to forces, seen from it, once it has tilted by 90° towards the direction of the case, (d, d).
+    """Return the rotation of forces for a tilt of the table by 90° towards the direction of the case, (d, d).
 
     About the horizontal axis square to the direction: what pulled down pulls along it. At an angle θ on the way, dead
     loads are cos θ of themselves and sin θ of themselves so turned. Raises CaseError where they are not: without a
@@ -336,7 +336,7 @@ def _quarter_turn(case: Case, dead: Sequence[AppliedLoad]) -> np.ndarray:
 
 
 def _resultants(model: Model, loads: Sequence[AppliedLoad]) -> np.ndarray:
-    """Forces and moments about the centroids, (n_blocks, n_dof) [N, N m]."""
+    """Sum the applied loads to forces and moments about the centroids, (n_blocks, n_dof) [N, N m]."""
     total = np.zeros_like(model.dead_loads)
     for load in loads:
         arms = load.points - model.centroids[load.blocks]
@@ -345,7 +345,7 @@ def _resultants(model: Model, loads: Sequence[AppliedLoad]) -> np.ndarray:
 
 
 def _on_modes(model: Model, loads: Sequence[AppliedLoad]) -> np.ndarray:
-    """What loads do to the modes of blocks that deform [N], (n_blocks, m); weight acts evenly and does nothing."""
+    """Compute the generalised forces of point loads on the modes of deformable blocks [N], (n_blocks, m)."""
     total = np.zeros_like(model.mode_stiffness)
     for load in loads:
         arms = load.points - model.centroids[load.blocks]

@@ -1,4 +1,4 @@
-"""Stones that crack: every block of a structure is cut across its length into pieces, with a bonded joint between them.
+"""Cut every block of a structure across its length into pieces with a bonded joint, so that it can crack.
 
 The blocks are whole as generators lay them; here they are cut, whatever drew them, in the plane and in space alike.
 """
@@ -23,7 +23,7 @@ LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
 
 def cracked(blocks: Sequence[Block], crack: Crack | None) -> list[Block]:
-    """The blocks of a structure, those that can move in pieces: "3-2" becomes "3-2/a", "3-2/b"; None: all whole.
+    """Cut the movable blocks of a structure into pieces: "3-2" becomes "3-2/a", "3-2/b"; None: all stay whole.
 
     Blocks that their planes do not cut stay as they are.
     """
@@ -55,7 +55,7 @@ def _pieces(block: Block, crack: Crack) -> list[Block]:
 
 
 def along(corners: np.ndarray) -> np.ndarray:
-    """Unit vector along the length of a block, by its corners (n, d); of several as long, that nearest to x."""
+    """Return the unit vector along the longest extent of a block's corners (n, d); of equal ones, that nearest to x."""
     arms = corners - corners.mean(axis=0)
     values, vectors = diagonalised(product(arms.T, arms))
     longest = vectors[:, values >= (1.0 - ALIKE) * values[-1]]
@@ -68,7 +68,7 @@ def along(corners: np.ndarray) -> np.ndarray:
 
 
 def _cut(parts: Sequence[Any], normal: np.ndarray, height: float) -> tuple[list[Any], list[Any]]:
-    """Parts on both sides of the plane {x: normal · x = height} [m]."""
+    """Cut parts by the plane {x: normal · x = height} [m]; returns those behind and those beyond it."""
     behind, beyond = list[Any](), list[Any]()
     for part in parts:
         sides = _solid_halves(part, normal, height) if isinstance(part, Polyhedron) else _halves(part, normal, height)
@@ -86,7 +86,7 @@ def _solid_halves(solid: Polyhedron, normal: np.ndarray, height: float) -> tuple
 
 
 def _halves(shape: np.ndarray, normal: np.ndarray, height: float) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """The same of a polygon: what lies to the left of a line along the plane is behind it."""
+    """Cut a polygon by the plane {x: normal · x = height} [m] into the parts behind and beyond it."""
     start = height * normal
     end = start + np.array([-normal[1], normal[0]])
     left, right = cuts.halves(shape, start, end, polygon.ROUND_OFF * polygon.size(shape))
@@ -94,7 +94,7 @@ def _halves(shape: np.ndarray, normal: np.ndarray, height: float) -> tuple[list[
 
 
 def _size(part: Any) -> float:
-    """How large a part is beside others: its area, in space some times its volume [m^d]."""
+    """Return a measure of the size of a part for comparison: its area, or a multiple of its volume [m^d]."""
     if not isinstance(part, Polyhedron):
         return polygon.area(part)
     loops = [part.vertices[face] for face in part.faces]

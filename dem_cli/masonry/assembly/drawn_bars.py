@@ -1,4 +1,4 @@
-"""Bars as they were drawn, [[reinforcement]]: a polyline cut where it goes from block to block."""
+"""Cut the path of a bar of [[reinforcement]] into its pieces in the blocks that it crosses."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ TOUCHES = 1e-9  # of the largest part: what a line has in a part is round-off
 
 
 class BarStretch(NamedTuple):
-    """Stretch of a bar that lies in a block, from and to, along it [m]."""
+    """Stretch of a bar inside one block, from its beginning to its end along the bar [m]."""
 
     block: int
     begin: float
@@ -35,7 +35,7 @@ class BarStretch(NamedTuple):
 def drawn_bar(
     case: Case, table: Reinforcement, path: KeyPath, model: Model, problems: list[CaseProblem]
 ) -> DrawnBar | None:
-    """The pieces of a bar in the blocks as they were drawn; None: something is wrong, which `problems` gets."""
+    """Find the pieces of a bar in the undeformed blocks; None where `problems` gets a message."""
     profile = case.bars[table.bar]
     element = FINE / profile.decay if table.element is None else table.element
     corners = np.array(table.path, float)
@@ -66,7 +66,7 @@ def drawn_bar(
 
 
 def _unlike_bond(name: str, decay: float, element: float, corners: np.ndarray) -> str | None:
-    """Words for a bar that is far stiffer than its bond, or that has far too many elements; None: it is neither.
+    """Return a message for a bar far stiffer than its bond, or with far too many elements; None: neither.
 
     decay: of bond forces along the bar [1/m]; element: length of its elements [m]; corners: of its path [m], (n, d).
     """
@@ -82,7 +82,7 @@ def _unlike_bond(name: str, decay: float, element: float, corners: np.ndarray) -
 
 
 def _in_blocks(model: Model, start: np.ndarray, along: np.ndarray, length: float) -> list[BarStretch]:
-    """Stretches of a bar in each block, in the order in which it meets them."""
+    """Intersect a straight bar with the blocks; returns its stretches in the order along the bar."""
     vertices, topology = undeformed(model), model.topology
     normals = shapes_of(vertices).normals(vertices, topology)
     ahead = ((vertices[topology.face_corners[topology.face_starts[:-1]]] - start) * normals).sum(axis=1)
@@ -109,7 +109,7 @@ def _in_blocks(model: Model, start: np.ndarray, along: np.ndarray, length: float
 
 
 def _beside(model: Model, stretches: list[BarStretch]) -> str | None:
-    """What is wrong where a line lies in two blocks at once, which is in their joint."""
+    """Return a message where a bar lies in two blocks at once, so that it runs along their joint; None if nowhere."""
     for one, other in zip(stretches, stretches[1:]):
         if one.end - other.begin > TOUCHES * model.parts.sizes.max():
             ids = " and ".join(show(model.block_ids[stretch.block]) for stretch in (one, other))
@@ -120,7 +120,7 @@ def _beside(model: Model, stretches: list[BarStretch]) -> str | None:
 def _outside(
     stretches: list[BarStretch], start: np.ndarray, along: np.ndarray, length: float, element: float
 ) -> str | None:
-    """What is wrong where a line leaves the blocks; joints that are open by no more than an element it crosses."""
+    """Return a message where a bar leaves the blocks, open joints up to one element wide aside; None if nowhere."""
     edges = [0.0, *(edge for stretch in stretches for edge in stretch[1:]), length]
     for i, (begin, end) in enumerate(zip(edges[::2], edges[1::2])):
         inner = 0 < i < len(stretches)

@@ -1,4 +1,4 @@
-"""Blocks drawn by hand, [[block]]: polygons, in 3D polyhedra by hull, by faces, in parts, or prisms."""
+"""Create the blocks drawn by hand, [[block]]: polygons, in 3D polyhedra by hull, by faces, in parts, or prisms."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Pieces = Iterator[tuple[KeyPath, Callable[[], Any]]]  # key of a piece, and what
 
 
 def drawn_block(table: BlockTable, i: int, dimension: int) -> Block:
-    """The block of the i-th [[block]]; raises CaseError with a problem for each bad piece."""
+    """Create the block of the i-th [[block]] table; raises CaseError with a problem for each bad piece."""
     parts, problems = [], []
     for key, make in PIECES[dimension](table):
         try:
@@ -32,13 +32,13 @@ def drawn_block(table: BlockTable, i: int, dimension: int) -> Block:
 
 
 def polygons(table: BlockTable) -> Pieces:
-    """The pieces of a block in the plane."""
+    """Yield the convex pieces of a block in the plane."""
     for key, corners, _ in corners_of(table):
         yield key, partial(polygon.in_order, corners)
 
 
 def polyhedra(table: BlockTable) -> Pieces:
-    """The pieces of a block in space."""
+    """Yield the convex pieces of a block in space."""
     if table.polygon is not None and table.y is not None:
         yield ("polygon",), partial(_prism, table.polygon, table.y)
     for key, corners, faces in corners_of(table):
@@ -54,7 +54,7 @@ def _prism(corners: Sequence[Pair], y: Pair) -> polyhedron.Polyhedron:
 
 
 def corners_of(table: BlockTable) -> Iterator[tuple[KeyPath, Any, Any]]:
-    """Key, corners and faces, if they are given, of each convex piece."""
+    """Yield key, corners and given faces of each convex piece of a [[block]] table."""
     if table.vertices is not None:
         yield ("vertices",), table.vertices, table.faces
     for k, part in enumerate(table.parts or ()):

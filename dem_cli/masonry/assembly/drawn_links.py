@@ -1,4 +1,4 @@
-"""Links as they were drawn, [[tie]] and [[reinforcement]]: from points in space to material points of blocks."""
+"""Convert [[tie]] and [[reinforcement]] from points in space to material points of blocks."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
 
 
 class DrawnLinks(NamedTuple):
-    """The links of one kind."""
+    """Ties or bars of a case, all of one kind, attached to the undeformed blocks."""
 
     link: Link
     tables: Sequence[Any]
     drawn: Sequence[Any]  # LinkEnds or DrawnBar, points from the centroids of their blocks
 
     def laid(self, centroids: np.ndarray) -> Any:
-        """Their arrays, where the blocks lie [m], (n_blocks, d)."""
+        """Create the arrays of the links for blocks with centroids (n_blocks, d) [m]."""
         return self.link.made(self.tables, self.drawn, centroids)
 
 
 def drawn_links(case: Case, model: Model) -> list[DrawnLinks]:
-    """The links of a case by kind, in its blocks as they were drawn. Raises CaseError with all that is wrong."""
+    """Attach the ties and bars of a case to its blocks, by kind. Raises CaseError with every problem."""
     found, problems = [], list[CaseProblem]()
     for key in LINKS:
         if tables := getattr(case, key):
@@ -45,7 +45,7 @@ def drawn_links(case: Case, model: Model) -> list[DrawnLinks]:
 
 
 def names_of(case: Case) -> tuple[str, ...]:
-    """Names of all links of a case, in the order of their arrays."""
+    """List the names of all ties and bars of a case, in the order of their arrays."""
     return tuple(
         table.id or f"{LINKS[key].word}-{i + 1}" for key in LINKS for i, table in enumerate(getattr(case, key))
     )
@@ -54,7 +54,7 @@ def names_of(case: Case) -> tuple[str, ...]:
 def _ties(
     case: Case, tables: Sequence[Any], key: str, model: Model, problems: list[CaseProblem]
 ) -> list[LinkEnds | None]:
-    """Blocks and points of each; None: something is wrong."""
+    """Find blocks and attachment points of each tie; None where `problems` gets a message."""
     ends = np.array([table.ends for table in tables], float)  # (n, 2, d)
     inside = blocks_at_all(model, ends.reshape(-1, model.dimension))
     return [
@@ -65,7 +65,7 @@ def _ties(
 def _bars(
     case: Case, tables: Sequence[Any], key: str, model: Model, problems: list[CaseProblem]
 ) -> list[DrawnBar | None]:
-    """The pieces of each; None: something is wrong."""
+    """Find the pieces in blocks of each bar; None where `problems` gets a message."""
     return [drawn_bar(case, table, (key, i), model, problems) for i, table in enumerate(tables)]
 
 
@@ -77,7 +77,7 @@ def _ends(
     inside: Sequence[np.ndarray],
     problems: list[CaseProblem],
 ) -> LinkEnds | None:
-    """Blocks and points of a tie; None: something is wrong. inside: blocks in which its two ends lie."""
+    """Find blocks and attachment points of one tie; None where `problems` gets a message."""
     first = _holding(model, (*path, "block"), table.block, points[0], inside[0], (*path, "ends", 0), problems)
     second: int | None = FIXED_POINT
     if not table.anchored:
@@ -107,7 +107,7 @@ def _holding(
     at: KeyPath,
     problems: list[CaseProblem],
 ) -> int | None:
-    """Number of the block that holds an end: the one that is named, or the one in which it lies."""
+    """Return the block that holds one end of a tie: the named one, or the one around the point."""
     ids, where = model.block_ids, show(tuple(point.tolist()))
     message = None
     if name is not None and name not in model.numbers:

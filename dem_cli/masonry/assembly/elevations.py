@@ -1,4 +1,4 @@
-"""Errors of blocks in 3D: each structure gets those of [[imperfection]] in its own elevation, before it is set up.
+"""Apply geometric imperfections to blocks in 3D, in the elevation of each structure before it is placed.
 
 Its blocks are laid again among themselves; of blocks drawn by hand and of other structures they know nothing.
 """
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def imperfect_in_space(case: Case, model: Model, blocks: Sequence[Block]) -> ImperfectBlocks:
-    """As `imperfect`, for blocks in space. Raises CaseError, also for errors of blocks drawn by hand."""
+    """Apply [[imperfection]] to blocks in space. Raises CaseError, also for blocks drawn by hand."""
     upright = [_elevation(case, i) for i in range(len(case.structure))]
     problems = [*_of_drawn_blocks(case, model, blocks), *_of_solids(case, upright)]
     if problems:
@@ -48,7 +48,7 @@ def imperfect_in_space(case: Case, model: Model, blocks: Sequence[Block]) -> Imp
 
 
 def _of_drawn_blocks(case: Case, model: Model, blocks: Sequence[Block]) -> Iterator[CaseProblem]:
-    """Tables about blocks drawn by hand, which have no elevation."""
+    """Report imperfections of blocks drawn by hand, which have no elevation."""
     drawn = [block.id for block in blocks if block.path[0] == "block" and not block.fixed]
     for i, table in enumerate(case.imperfection):
         if any(model.block_ids[k] in drawn for k in model.chosen(table.block)):
@@ -60,7 +60,7 @@ def _of_drawn_blocks(case: Case, model: Model, blocks: Sequence[Block]) -> Itera
 
 
 def _of_solids(case: Case, upright: Sequence[Sequence[Block]]) -> Iterator[CaseProblem]:
-    """Tables about structures that have no elevation: `upright`, of each structure its blocks, is empty."""
+    """Report imperfections of structures without an elevation: their list of blocks in `upright` is empty."""
     solid = [table.id for table, blocks in zip(case.structure, upright, strict=True) if not blocks]
     for i, table in enumerate(case.imperfection):
         if table.structure in solid:
@@ -72,7 +72,7 @@ def _of_solids(case: Case, upright: Sequence[Sequence[Block]]) -> Iterator[CaseP
 
 
 def _elevation(case: Case, i: int) -> list[Block]:
-    """Blocks of structure i as its generator draws them, by their full names; without what stands beside its plane.
+    """Generate the blocks of structure i in its elevation, by their full names.
 
     None where its blocks are solids, or lie behind each other.
     """
@@ -89,7 +89,7 @@ def _elevation(case: Case, i: int) -> list[Block]:
 
 
 def _planar_model(case: Case, blocks: Sequence[Block]) -> Model:
-    """The blocks of an elevation as a model, which is only there for their places: without materials and loads."""
+    """Create a planar model of an elevation for its geometry alone, without materials and loads."""
     n = len(blocks)
     thickness = np.array([block.thickness for block in blocks])
     bodies = bodies_of(2, [block.parts for block in blocks], np.ones(n), thickness)

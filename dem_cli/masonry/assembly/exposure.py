@@ -1,4 +1,4 @@
-"""Exposed faces of blocks: parts of them that no other block covers at the start, and those open to the sky."""
+"""Find the exposed faces of blocks: parts that no other block covers at the start, and those open to the sky."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ BESIDE = 1e-6  # of a face: so far from an upright one its open side is looked a
 
 
 class SurfacePiece(NamedTuple):
-    """A piece of a face that nothing covers."""
+    """Exposed piece of a block face, covered by no other block."""
 
     block: int
     part: int
@@ -32,7 +32,7 @@ class SurfacePiece(NamedTuple):
 
 
 class Surfaces:
-    """Faces of a model in place, the half-spaces of its parts, and what covers what."""
+    """Faces of a model in place with the half-spaces of its parts and the faces that cover each other."""
 
     def __init__(self, model: Model):
         self.model, self.corners, self.topology = model, undeformed(model), model.topology
@@ -48,7 +48,7 @@ class Surfaces:
         self._pieces: dict[int, list[SurfacePiece]] = {}
 
     def exposed(self, blocks: np.ndarray, faces: np.ndarray) -> list[SurfacePiece]:
-        """What nothing covers of those faces (n_faces,) bool that belong to some blocks (n,)."""
+        """Return the exposed pieces of the selected faces (n_faces,) bool of some blocks (n,)."""
         parts = self.topology.face_parts
         of_blocks = np.isin(self.model.part_blocks[parts], blocks)
         chosen = np.flatnonzero(of_blocks & faces & ~self.model.inner_faces)
@@ -59,14 +59,14 @@ class Surfaces:
         return [piece for face in bare.tolist() for piece in self._pieces[face]]
 
     def near(self, normals: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-        """Faces of which some corner lies in each of some half-spaces: all that have a part there, (n_faces,) bool."""
+        """Select the faces that may reach into all of some half-spaces, by their corners, (n_faces,) bool."""
         found, first = np.ones(self.topology.n_faces, bool), self.topology.face_starts[:-1]
         for normal, offset in zip(normals, offsets, strict=True):
             found &= np.minimum.reduceat(product(self.corners, normal)[self.topology.face_corners], first) <= offset
         return found
 
     def open_above(self, pieces: Sequence[SurfacePiece], ceiling: float, roofs: np.ndarray) -> list[SurfacePiece]:
-        """What of some pieces has no part of the blocks `roofs` (n,) above it that begins below a ceiling [m]."""
+        """Keep the parts of exposed pieces above which no block of `roofs` (n,) begins below a ceiling [m]."""
         open_, roofing = list[SurfacePiece](), np.isin(self.model.part_blocks, roofs)
         for piece in pieces:
             upright = abs(piece.normal[-1]) <= SLIVER
@@ -79,12 +79,12 @@ class Surfaces:
         return open_
 
     def _middles(self) -> np.ndarray:
-        """Means of the corners of all faces [m], (n_faces, d)."""
+        """Mean corner of each face [m], (n_faces, d)."""
         starts = self.topology.face_starts
         return np.add.reduceat(self.corners[self.topology.face_corners], starts[:-1]) / np.diff(starts)[:, np.newaxis]
 
     def _free(self, face: int) -> Iterator[SurfacePiece]:
-        """The pieces of a face that are not covered."""
+        """Yield the exposed pieces of one face."""
         part, corners = int(self.topology.face_parts[face]), self._around(face)
         least = SLIVER * float(self.sizes[face])
         whole = SurfacePiece(int(self.model.part_blocks[part]), part, self.normals[face], corners, least)
@@ -95,12 +95,12 @@ class Surfaces:
         yield from _pieces(whole, left)
 
     def _around(self, face: int) -> np.ndarray:
-        """Corners of a face [m], (n, d)."""
+        """Return the corners of a face [m], (n, d)."""
         starts = self.topology.face_starts
         return self.corners[self.topology.face_corners[starts[face] : starts[face + 1]]]
 
     def _sides(self, face: int) -> tuple[np.ndarray, np.ndarray]:
-        """Half-spaces square to a face through its sides, in the plane through its ends."""
+        """Return the half-spaces through the sides of a face, square to it; in the plane through its ends."""
         around, normal = self._around(face), self.normals[face]
         if len(normal) == 2:
             along = (around[1] - around[0]) / np.hypot(*(around[1] - around[0]))
@@ -115,7 +115,7 @@ class Surfaces:
         return surface_pieces.shadow(self.normals[faces], self.offsets[faces])
 
     def _above(self, piece: SurfacePiece, corners: np.ndarray, ceiling: float, roofing: np.ndarray) -> list[int]:
-        """Parts that may lie above a piece, with these corners, and begin below the ceiling."""
+        """Find the parts that may lie above a piece with these corners and begin below the ceiling."""
         low, high = corners.min(axis=0), corners.max(axis=0)
         small = SLIVER * (high - low).max()
         over = (self.low[:, :-1] < high[:-1] - small).all(axis=1) & (self.high[:, :-1] > low[:-1] + small).all(axis=1)
@@ -128,7 +128,7 @@ class Surfaces:
         return np.flatnonzero(over).tolist()
 
     def _covers(self) -> tuple[dict[int, list[int]], np.ndarray]:
-        """Of each face those of other parts that lie on it, and how much of it they cover together [m^(d-1)]."""
+        """Find the faces that cover each face, and the area that they cover together [m^(d-1)]."""
         alone = self.model.parts_alone()._replace(thickness=np.ones(self.model.n_parts))
         found = self._face_to_face(find_joints(alone, self.corners, joint_reach(self.model)))
         outlines = geometry_of(self.model.dimension).drawn(alone, found, self.corners, -np.inf)
@@ -144,7 +144,7 @@ class Surfaces:
         return covers, covered
 
     def _face_to_face(self, near: Faces) -> Faces:
-        """Of parts that touch, all pairs of faces that lie on each other: several where a side has a corner on it."""
+        """Pair the faces of touching parts that lie on each other; several where a side has a corner on it."""
         scale = self.model.parts.sizes[near.parts].min(axis=1)
         touching = joined(near.separation, scale)
         parts, scale, gaps = near.parts[touching], scale[touching], near.separation[touching]
@@ -163,5 +163,5 @@ class Surfaces:
 
 
 def _pieces(whole: SurfacePiece, rest: Sequence[np.ndarray]) -> list[SurfacePiece]:
-    """Rest of a piece of a face after cuts; none where only round-off is left."""
+    """Return the remaining pieces of a face after cuts, round-off left out."""
     return [whole._replace(corners=one) for one in rest if surface_pieces.measure(one) > whole.least]

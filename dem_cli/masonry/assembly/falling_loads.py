@@ -1,4 +1,4 @@
-"""Falling loads: an axle at a point or a load along a line, on the faces highest under it, spread through fill.
+"""Distribute an axle load at a point or a load along a line to the faces under it, spread through fill.
 
 A load at a point spreads over a disc, one along a line to either side of it: both turn with the structure.
 """
@@ -28,7 +28,7 @@ BESIDE = 1e-3  # of a load: so much of it may lie over no block
 
 
 def falling_load(model: Model, surfaces: Surfaces | None, path: KeyPath, table: Load) -> AppliedLoad:
-    """A load at a point or along a line, on the faces that lie highest under it."""
+    """Compute the point forces of a load at a point or along a line on the highest faces under it."""
     assert surfaces is not None  # applied_loads
     key = "at" if table.line is None else "line"
     ends = np.array([table.at, table.at] if table.line is None else table.line)
@@ -55,7 +55,7 @@ def falling_load(model: Model, surfaces: Surfaces | None, path: KeyPath, table: 
 
 
 class _Carried(NamedTuple):
-    """Where a load that is even, seen from above, falls on blocks."""
+    """Points and areas of blocks over which a load uniform in plan is distributed."""
 
     blocks: np.ndarray  # (n,)
     points: np.ndarray  # (n, d) [m]
@@ -65,7 +65,7 @@ class _Carried(NamedTuple):
 def _under(
     surfaces: Surfaces, blocks: np.ndarray, top: float, ends: np.ndarray, reach: tuple[float, float]
 ) -> _Carried:
-    """What of the faces of some blocks lies highest below a height [m], so far around a point or line (2, d).
+    """Find the highest faces of some blocks below a height [m] around a point or line (2, d), cut to the loaded strip.
 
     reach: how far a load spreads to each side, and what it is wide at least [m].
     """
@@ -84,7 +84,7 @@ def _under(
 
 
 def _strip(ends: np.ndarray, small: float, wider: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Upright half-spaces around a point or line (2, d), to each side by `wider`, across it by `small` at least [m].
+    """Return upright half-spaces around a point or line (2, d): `wider` to each side, `small` across at least [m].
 
     Around a point in space a square, in which the disc lies that counts.
     """
@@ -103,7 +103,7 @@ def _strip(ends: np.ndarray, small: float, wider: float = 0.0) -> tuple[np.ndarr
 
 
 def _quadrature(pieces: Sequence[SurfacePiece], dimension: int) -> _Carried:
-    """Points that are exact for linear functions of place on all of some pieces."""
+    """Integrate over pieces of faces at points that are exact for linear functions."""
     blocks, points, areas = list[int](), [np.empty((0, dimension))], [np.empty(0)]
     for piece in pieces:
         places, weights = surface_pieces.quadrature(piece.corners)
@@ -114,7 +114,7 @@ def _quadrature(pieces: Sequence[SurfacePiece], dimension: int) -> _Carried:
 
 
 def _on_disc(pieces: Sequence[SurfacePiece], centre: np.ndarray, radius: float) -> _Carried:
-    """What of some pieces lies under a disc: one point each, its centroid. Seen from any side it is the same."""
+    """Return the area and centroid of each piece within a disc, seen from above."""
     found = [(piece.block, *surface_pieces.over_disc(piece.corners, centre, radius)) for piece in pieces]
     found = [each for each in found if each[1] > ROUND_OFF * radius**2]
     blocks, areas, points = ([each[k] for each in found] for k in range(3))

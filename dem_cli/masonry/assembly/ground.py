@@ -1,4 +1,4 @@
-"""Ground: one fixed block under everything that stands on it."""
+"""Create the ground: one fixed block under all structures."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ON_IT = 1e-6  # of the same: what begins so near to its top stands on it
 
 
 def ground_blocks(table: GroundTable, blocks: Sequence[Block], problems: list[CaseProblem]) -> list[Block]:
-    """The ground under blocks (one), or none and a problem: blocks that reach below its level."""
+    """Create the ground block under the structures; adds a problem for blocks that reach below its level."""
     fixed = [block for block in blocks if block.fixed and any(not other.fixed for other in blocks)]
     blocks = [block for block in blocks if not block.fixed] or blocks
     corners = [np.concatenate([corners_of(part) for part in block.parts]) for block in blocks]
@@ -49,7 +49,7 @@ def ground_blocks(table: GroundTable, blocks: Sequence[Block], problems: list[Ca
 
 
 def _reaches_into(block: Block, low: np.ndarray, high: np.ndarray, least: float) -> bool:
-    """Whether a part of a block and a box share more than a face, by the box around the part."""
+    """Test whether a part of a block overlaps a box by more than a face, by the box around the part."""
     for part in map(corners_of, block.parts):
         shared = np.minimum(part.max(axis=0), high) - np.maximum(part.min(axis=0), low)
         if (shared > least).all():

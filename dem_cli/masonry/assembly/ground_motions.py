@@ -1,4 +1,4 @@
-"""Ground motions of a case: from its [motion] tables to `Motion` objects."""
+"""Create the ground motions of a case from its [motion] tables."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ LIKELY = (0.005, 3.0)  # g: peaks of a unit that is proposed instead
 
 
 def motions_of(case: Case) -> list[Motion]:
-    """The motions of a case, one for each [[motion]] but those of kind "none"; of a suite the record `number`.
+    """Create the ground motions of a case, one for each [[motion]] except kind "none"; of a suite the record `number`.
 
     Motions of the same block add up. Raises CaseError on a record that cannot be used.
     """
@@ -45,7 +45,7 @@ def motions_of(case: Case) -> list[Motion]:
 
 
 def suites_of(case: Case) -> list[list[Motion]]:
-    """All records of each [[motion]] but those of kind "none": one, or `count` of an artificial one.
+    """Create all records of each [[motion]] except kind "none": one, or `count` of an artificial suite.
 
     Raises CaseError on a record that cannot be used.
     """
@@ -53,7 +53,7 @@ def suites_of(case: Case) -> list[list[Motion]]:
 
 
 def check(case: Case) -> list[CaseProblem]:
-    """Reads every record: warnings about them. Raises CaseError on one that cannot be used."""
+    """Read every ground motion record and return warnings about it. Raises CaseError on one that cannot be used."""
     found = []
     for i, table in enumerate(case.motion):
         if isinstance(table, PulseTable) and (length := _pulse(table).duration) > LONGEST:
@@ -69,7 +69,7 @@ def _moving(case: Case) -> list[MotionTable]:
 
 
 def _suite(table: MotionTable, i_table: int, seed: int) -> list[Motion]:
-    """The records of one table, with its direction, blocks and start."""
+    """Create the records of one [motion] table with direction, blocks and start."""
     factor, titles, shapes = 1.0, [""], list[Waveform]()
     if isinstance(table, PulseTable):
         shapes, titles = [_pulse(table)], [table.shape]
@@ -89,7 +89,7 @@ def _suite(table: MotionTable, i_table: int, seed: int) -> list[Motion]:
 
 
 def _with_warnings(motion: Motion, table: RecordTable) -> Motion:
-    """A record, which may begin at another time than 0 and may leave the base moving."""
+    """Add warnings to a record that begins at another time than 0 or leaves the base moving."""
     assert isinstance(motion.shape, Accelerogram)
     warnings = [shifted(motion.shape, table.start)]
     peak = motion.peak / STANDARD_GRAVITY
@@ -101,7 +101,7 @@ def _with_warnings(motion: Motion, table: RecordTable) -> Motion:
 
 
 def shifted(shape: Accelerogram, start: float) -> str:
-    """A remark about a record whose times begin elsewhere than at 0, by more than a step; or nothing."""
+    """Return a remark about a record that begins at another time than 0 by more than a step; empty otherwise."""
     if abs(shape.first) <= 1.5 * shape.step:  # many begin at 0, or a step later
         return ""
     keeps = f"; start = {shape.first:g} keeps the times of the file" if shape.first > 0.0 and start == 0.0 else ""
@@ -131,7 +131,7 @@ def _harmonic(table: HarmonicTable) -> Waveform:
 
 
 def _record(table: RecordTable, i_table: int) -> Accelerogram:
-    """Read, convert, correct; the factor of `scale` or `peak` is left to the motion. Raises CaseError."""
+    """Read, convert and correct a record, leaving `scale` and `peak` to the motion. Raises CaseError."""
     try:
         series = read_series(Path(table.file), table.step, table.column, table.uneven)
     except RecordError as error:
@@ -154,7 +154,7 @@ def _record(table: RecordTable, i_table: int) -> Accelerogram:
 
 
 def _unit_of(table: RecordTable, quantity: str | None, unit: str | None, i_table: int) -> str:
-    """The unit of a record, as the case or else the file says. Raises CaseError where they disagree or are silent."""
+    """Return the unit of a record from the case or the file. Raises CaseError where they disagree or give none."""
     name, allowed = Path(table.file).name, ", ".join(f"'{unit}'" for unit in SI_FACTORS[table.quantity])
     if quantity is not None and quantity != table.quantity:
         message = f"'{table.quantity}' is not allowed; {name} says that it holds {quantity}"
@@ -170,7 +170,7 @@ def _unit_of(table: RecordTable, quantity: str | None, unit: str | None, i_table
 
 
 def _check_peak(table: RecordTable, unit: str, peak: float, i_table: int) -> None:
-    """Raises CaseError where the peak [g] is that of no earthquake, unless scale or peak is given."""
+    """Raise CaseError where the peak [g] is implausible for an earthquake and neither scale nor peak is given."""
     if table.scale is not None or table.peak is not None or WEAKEST <= peak <= STRONGEST:
         return
     message = f"{odd_peak(table.quantity, unit, peak)}; if it is meant, add scale = 1.0"
@@ -178,7 +178,7 @@ def _check_peak(table: RecordTable, unit: str, peak: float, i_table: int) -> Non
 
 
 def odd_peak(quantity: str, unit: str, peak: float) -> str:
-    """Words about a peak acceleration [g] that a record has in its unit, and the units in which it would be likely."""
+    """Return a message about an implausible peak acceleration [g] and the units in which it would be plausible."""
     factors = SI_FACTORS[quantity]
     others = {other: peak * factor / factors[unit] for other, factor in factors.items()}
     likely = [f"'{other}' would give {g:.3g} g" for other, g in others.items() if LIKELY[0] <= g <= LIKELY[1]]

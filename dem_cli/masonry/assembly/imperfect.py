@@ -1,4 +1,4 @@
-"""Blocks with errors: of the size that [[imperfection]] says, out of plumb, and laid again."""
+"""Apply geometric imperfections of [[imperfection]]: wrong sizes, lean, and blocks laid again."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ LAYING_REACH = 0.5  # of the smallest side of a free block: neighbours that may 
 
 
 class Errors(NamedTuple):
-    """Of m blocks: those of one table, or all of them."""
+    """Geometric imperfections of m blocks, of one table or summed over all."""
 
     blocks: np.ndarray  # numbers of the blocks, (m,)
     height: np.ndarray  # [m], (m,)
@@ -39,7 +39,7 @@ class Errors(NamedTuple):
 
 
 class Site(NamedTuple):
-    """The blocks as drawn, and what errors need to know about them."""
+    """Blocks as drawn with their case and model, before imperfections are applied."""
 
     case: Case
     blocks: Sequence[Block]
@@ -52,14 +52,14 @@ class Site(NamedTuple):
 
 
 class ImperfectBlocks(NamedTuple):
-    """Blocks with the errors of [[imperfection]]."""
+    """Blocks with the imperfections of [[imperfection]] applied, and warnings about them."""
 
     blocks: list[Block]  # with errors, in the same order
     doubts: list[CaseProblem]  # what looks like a slip
 
 
 def imperfect(case: Case, model: Model, blocks: Sequence[Block]) -> ImperfectBlocks:
-    """The blocks with all errors of the case. Raises CaseError: errors that leave nothing of a block, and the like.
+    """Apply all imperfections of a case to its blocks. Raises CaseError where an error leaves nothing of a block.
 
     model: of the blocks as drawn, their order, names, corners and parts
     """
@@ -93,7 +93,7 @@ def _site(case: Case, model: Model, blocks: Sequence[Block]) -> Site:
 
 
 def _chosen(site: Site, table: Imperfection) -> np.ndarray:
-    """Numbers of the blocks that a table is about."""
+    """Return the numbers of the blocks that an [[imperfection]] table selects."""
     if table.block is not None or table.course is not None:  # none, where these are blocks of another structure
         return site.model.chosen(table.selected, False)
     chosen = ~site.model.fixed
@@ -103,7 +103,7 @@ def _chosen(site: Site, table: Imperfection) -> np.ndarray:
 
 
 def _misplaced(site: Site, i: int) -> list[CaseProblem]:
-    """What is wrong with the blocks that table i is about."""
+    """Report blocks of an [[imperfection]] table that it cannot be applied to, such as slanting ones."""
     table, chosen = site.case.imperfection[i], _chosen(site, site.case.imperfection[i])
     if table.lean != 0.0 and not site.case.structure:
         return [CaseProblem(("imperfection", i, "lean"), "there is no [[structure]] that could lean")]
@@ -120,7 +120,7 @@ def _misplaced(site: Site, i: int) -> list[CaseProblem]:
 
 
 def _errors(site: Site, low: np.ndarray, i: int) -> Errors:
-    """The errors of table i, drawn where it asks for that; `low`: lower left corners of all blocks (n_blocks, 2)."""
+    """Return the errors of table i, drawn at random where requested; `low`: lower left corners (n_blocks, 2)."""
     case, table = site.case, site.case.imperfection[i]
     blocks = _chosen(site, table)
 
@@ -137,7 +137,7 @@ def _errors(site: Site, low: np.ndarray, i: int) -> Errors:
 
 
 def _lean(site: Site, low: np.ndarray, blocks: np.ndarray, i: int) -> np.ndarray:
-    """Shift to the right of blocks of leaning structures [m], (m,): that of the foot of their courses."""
+    """Return the horizontal shift of blocks of leaning structures [m], (m,): that of the foot of their courses."""
     shift = np.zeros(len(blocks))
     for s, structure in enumerate(site.case.structure):
         some = site.structure[blocks] == s
@@ -150,7 +150,7 @@ def _lean(site: Site, low: np.ndarray, blocks: np.ndarray, i: int) -> np.ndarray
 
 
 def _sum(site: Site, tables: Sequence[Errors]) -> Errors:
-    """The errors of several tables together."""
+    """Sum the imperfections of several tables block by block."""
     blocks = np.unique(np.concatenate([errors.blocks for errors in tables]))
     total = Errors(blocks, *(np.zeros((len(blocks), *field.shape[1:])) for field in tables[0][1:]))
     for errors in tables:
@@ -161,7 +161,7 @@ def _sum(site: Site, tables: Sequence[Errors]) -> Errors:
 
 
 def _boxes(site: Site, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Lower left corners and sizes of the boxes around all blocks, in the axes of their structures, (n_blocks, 2)."""
+    """Return lower left corners and sizes of the blocks' boxes in the axes of their structures, (n_blocks, 2)."""
     local = turned(corners, -site.turns[site.owner])
     first = np.searchsorted(site.owner, np.arange(len(site.blocks)))
     low, high = np.minimum.reduceat(local, first), np.maximum.reduceat(local, first)
@@ -169,7 +169,7 @@ def _boxes(site: Site, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _nothing_left(site: Site, size: np.ndarray, tables: Sequence[Errors]) -> list[CaseProblem]:
-    """The first table that takes the whole height or length of a block, with what those before it took."""
+    """Report the first table that takes the whole height or length of a block."""
     totals = np.zeros((3, len(size)))
     for i, errors in enumerate(tables):
         k = errors.blocks
@@ -187,7 +187,7 @@ def _nothing_left(site: Site, size: np.ndarray, tables: Sequence[Errors]) -> lis
 
 
 def _doubts(site: Site, size: np.ndarray, errors: Errors, i: int) -> list[CaseProblem]:
-    """Errors that are large beside the block, most often given in mm or degrees."""
+    """Warn about errors that are large compared with the block, most often given in mm or degrees."""
     found = []
     for key, axis in (("height", 1), ("wedge", 1), ("length", 0)):
         values = getattr(errors, key)
@@ -213,7 +213,7 @@ def _numbers(error: Error) -> tuple[float, ...]:
 
 
 def _misshapen(site: Site, corners: np.ndarray, errors: Errors) -> np.ndarray:
-    """Corners of blocks with wrong sizes in wrong places, (n_vertices, 2): stretched with the boxes around them."""
+    """Stretch and shift the corners of blocks by their errors, (n_vertices, 2)."""
     low, size = _boxes(site, corners)
     row = np.full(len(site.blocks), -1)
     row[errors.blocks] = np.arange(len(errors.blocks))
@@ -229,7 +229,7 @@ def _misshapen(site: Site, corners: np.ndarray, errors: Errors) -> np.ndarray:
 
 
 def _laid(site: Site, corners: np.ndarray, tables: Sequence[Errors]) -> np.ndarray:
-    """Corners of the blocks laid again, (n_vertices, 2): those of structures turned alike together, in their axes."""
+    """Lay the blocks again after their errors, in the axes of their structures; corners (n_vertices, 2)."""
     free = ~site.model.fixed & site.level
     sides = _boxes(site, site.corners)[1][~site.model.fixed]
     largest = max(float(np.abs(field).max(initial=0.0)) for t in tables for field in (t.height, t.length, t.wedge))

@@ -1,4 +1,4 @@
-"""Imposed strains of blocks, [[strain]]: warming, swelling or drying as loads on the modes of blocks that deform.
+"""Convert imposed strains of blocks, [[strain]] (warming, swelling, drying), to loads on their deformation modes.
 
 A block that would have the strain ε0 if nothing held it has stresses C : (ε − ε0). That is a load K a0 on its modes, a0
 their amplitudes at ε0; of a strain in all directions alike only the first mode has any.
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def with_imposed_strains(case: Case, model: Model) -> Model:
-    """With the strains of all tables that select a block, and with what they do to its first mode."""
+    """Add the imposed strains of all [[strain]] tables, and their generalised forces, to the model."""
     total = np.zeros(model.n_blocks)
     for table in case.strain:
         total[model.chosen(table.selected, fixed=False)] += table.value
@@ -30,7 +30,7 @@ def with_imposed_strains(case: Case, model: Model) -> Model:
 
 
 def problems(case: Case, model: Model) -> Iterator[CaseProblem]:
-    """Strains of blocks that have none of their own, and where dead loads turn."""
+    """Report imposed strains of rigid blocks, and where dead loads turn."""
     tables = list(case.materials.values())
     strains = np.array([table.strains for table in tables])[model.block_material] & ~model.fixed
     for i, table in enumerate(case.strain):

@@ -1,4 +1,4 @@
-"""Blocks laid as a mason does: side by side from left to right, then set down from the lowest up.
+"""Lay blocks as a mason does: side by side from left to right, then set down from the lowest up.
 
 Who lies on whom is read from the structure without errors; how far everybody moves is one pass through that order,
 because the clearance of two blocks that only rise and sink changes by the difference of their lifts.
@@ -23,7 +23,7 @@ MIRROR = np.array([[0.0, 1.0], [1.0, 0.0]])  # x and y change places: beside bec
 
 
 class Interlocked(ValueError):
-    """Blocks that lie above and below each other, or left and right of each other; `blocks` are their numbers."""
+    """Pairs of blocks that block each other's way, above and below or left and right; `blocks` are their numbers."""
 
     def __init__(self, blocks: Sequence[int]):
         super().__init__("blocks that hold each other")
@@ -31,19 +31,19 @@ class Interlocked(ValueError):
 
 
 class Order(NamedTuple):
-    """Who is laid after whom: convex parts, in pairs (the later one, the earlier one), (n, 2) int64."""
+    """Order of laying: convex parts in pairs (the later one, the earlier one), (n, 2) int64."""
 
     beside: np.ndarray  # the later one lies to the right
     above: np.ndarray  # the later one lies above, or may come to
 
 
 def neighbours(model: Model, reach: float) -> np.ndarray:
-    """Pairs of parts of different blocks that are closer than `reach` [m], each once, (n, 2)."""
+    """Find pairs of parts of different blocks that are closer than `reach` [m], each once, (n, 2)."""
     return np.unique(find_joints(model, undeformed(model), reach).parts, axis=0)
 
 
 def order_of(model: Model, corners: np.ndarray, pairs: np.ndarray) -> Order:
-    """The order in which neighbouring parts are laid, from `corners` without errors (n_vertices, 2) [m]."""
+    """Determine the order in which neighbouring parts are laid, from `corners` without errors (n_vertices, 2) [m]."""
     starts = model.part_starts
     later, earlier = np.concatenate([pairs, pairs[:, ::-1]]).T
     small = _small(model, later, earlier)
@@ -60,7 +60,7 @@ def order_of(model: Model, corners: np.ndarray, pairs: np.ndarray) -> Order:
 
 
 def lay(model: Model, corners: np.ndarray, order: Order, movable: np.ndarray) -> np.ndarray:
-    """Where blocks of wrong size come to lie: how far each is moved to the right and up [m], (n_blocks, 2).
+    """Compute how far each block of wrong size moves to the right and up when laid [m], (n_blocks, 2).
 
     corners   of all parts, with errors [m], (n_vertices, 2)
     movable   blocks that are laid; all others stay and are in the way, (n_blocks,) bool
@@ -76,7 +76,9 @@ def lay(model: Model, corners: np.ndarray, order: Order, movable: np.ndarray) ->
 
 
 def _moves(model: Model, corners: np.ndarray, pairs: np.ndarray, movable: np.ndarray, least: float) -> np.ndarray:
-    """Upward moves that take every movable block off the earlier ones, at least `least` [m], (n_blocks,)."""
+    """Compute the upward moves that clear every movable block of the earlier ones, at least `least` [m],
+    (n_blocks,).
+    """
     pairs = pairs[movable[model.part_blocks[pairs[:, 0]]]]
     small = _small(model, pairs[:, 0], pairs[:, 1])
     gaps = clearances(pairs[:, 0], pairs[:, 1], corners, model.part_starts, small)
@@ -98,6 +100,6 @@ def _moves(model: Model, corners: np.ndarray, pairs: np.ndarray, movable: np.nda
 
 
 def _small(model: Model, later: np.ndarray, earlier: np.ndarray) -> np.ndarray:
-    """Distance between two parts that counts as none [m], (n,)."""
+    """Return the distance between two parts that counts as zero [m], (n,)."""
     sizes = model.parts.sizes
     return polygon.ROUND_OFF * np.minimum(sizes[later], sizes[earlier])

@@ -1,4 +1,4 @@
-"""Notes to mistakes in the geometry: where in space, and how much of two blocks is in the same place."""
+"""Describe where in space a geometry error is, and by how much two blocks overlap."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ ALL = 0.999  # of a part: so much of it is all of it
 
 
 class PlaceNotes(NamedTuple):
-    """What is added to a message in one dimension."""
+    """Functions that add location and overlap to a geometry message, for one dimension."""
 
     place: Callable[[Model, int], str]  # where a block is
     overlap: Callable[[Model, np.ndarray], str]  # what two parts (2,) have in common, and where
 
 
 def block_place(model: Model, block: int) -> str:
-    """Where the centroid of a block is."""
+    """Describe the location of a block by its centroid, for a message."""
     return f" at {rounded(model.centroids[block], model.shapes.radii[block])}"
 
 
 def common_place(model: Model, parts: np.ndarray) -> str:
-    """Volume that two overlapping parts have in common, and its middle; nothing where it is too thin to have any."""
+    """Describe the volume and middle of the overlap of two parts; empty where it is too thin for a volume."""
     corners, topology = undeformed(model), model.topology
     normals = shapes_of(corners).normals(corners, topology)
     offsets = (corners[topology.face_corners[topology.face_starts[:-1]]] * normals).sum(axis=1)
@@ -44,7 +44,7 @@ def common_place(model: Model, parts: np.ndarray) -> str:
 
 
 def rounded(point: np.ndarray, size: float) -> str:
-    """A point of something of that size [m] as people read it."""
+    """Format a point of a structure of this size [m] with four digits."""
     places = np.where(np.abs(point) > ROUND_OFF * size, point, 0.0)
     return show([float(f"{x:.4g}") for x in places])
 

@@ -1,4 +1,4 @@
-"""Forces at points: what a table of loads comes to, with its resultant and where that acts."""
+"""Forces at points that represent one table of loads, with their resultant and its line of action."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ POINT = 1e-6  # of the shortest edge: half the width of what a load at a point o
 
 
 class AppliedLoad(NamedTuple):
-    """The forces that one table of a case comes to."""
+    """Applied load: the point forces of one load table of a case."""
 
     path: KeyPath  # of the table
     dead: bool
@@ -27,16 +27,16 @@ class AppliedLoad(NamedTuple):
 
     @property
     def resultant(self) -> np.ndarray:
-        """Sum of the forces [N], (d,)."""
+        """Resultant of the load [N], (d,)."""
         return self.forces.sum(axis=0)
 
     @property
     def centre(self) -> np.ndarray:
-        """Mean of the points, weighted by their forces: of a plane face that of its line of action [m], (d,)."""
+        """Centre of the load, the mean of its points weighted by force [m], (d,)."""
         sizes = np.linalg.norm(self.forces, axis=1)
         return self.points.mean(axis=0) if sizes.sum() == 0.0 else product(sizes, self.points) / sizes.sum()
 
 
 def acts_on_nothing(path: KeyPath, key: str, message: str) -> CaseError:
-    """The error of a load that finds no face: one message at a key of its table."""
+    """Create the error, at a key of its table, of a load that finds no face to act on."""
     return CaseError([CaseProblem((*path, key), message)])

@@ -1,4 +1,4 @@
-"""Restraints, [[restraint]]: which motions of which blocks are held, such as the turning of a beam on top of a wall."""
+"""Restraints, [[restraint]]: prevented motions of blocks, such as the rotation of a beam on top of a wall."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ROTATION = "rotation"  # of a block in space: about every axis
 
 
 def restrained(case: Case, model: Model) -> np.ndarray:
-    """Motions that restraints hold, (n_blocks, d + r) bool; of no block where there are none.
+    """Return the motions that restraints prevent, (n_blocks, d + r) bool; empty where there are none.
 
     Raises CaseError: motions of the other dimension, and rotations about some axes only where blocks have real masses.
     """
@@ -42,7 +42,7 @@ def restrained(case: Case, model: Model) -> np.ndarray:
 
 
 def _partly_turning(case: Case, model: Model, held: np.ndarray, i: int) -> list[CaseProblem]:
-    """Blocks with real masses in space that turn about some axes only: their inertia is a tensor that turns along."""
+    """Report blocks with real masses in 3D that are restrained about some axes only: their inertia tensor rotates."""
     turns = held[:, model.rotations]
     if not kind_of(case.analysis.kind).real_masses or not (turns.any(axis=1) & ~turns.all(axis=1)).any():
         return []

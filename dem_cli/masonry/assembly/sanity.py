@@ -1,4 +1,4 @@
-"""Sanity of an assembled case: loads off their block or on fixed ones, joints too soft to stand on, units of sizes."""
+"""Sanity checks of an assembled case: loads off their block or on fixed ones, soft joints, units of sizes."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ INSTEAD = {  # of a dead load that presses and does not push: what would
 
 
 def problems(case: Case, model: Model) -> list[CaseProblem]:
-    """What can only be a mistake: point loads far outside the structure, joints that cannot carry it."""
+    """Report certain mistakes: point loads far outside the structure, joints or blocks too soft for the weight."""
     return [*_far_loads(case, model), *_soft_joints(case, model), *_soft_blocks(case, model)]
 
 
 def doubts(case: Case, model: Model, blocks: Sequence[Block], loads: Sequence[AppliedLoad]) -> list[CaseProblem]:
-    """What may be meant, and most often is not; `blocks` in the order of the model."""
+    """Collect warnings about an assembled case; `blocks` in the order of the model."""
     return [
         *size_doubts(_sizes(model, blocks)),
         *odd_loads(case, model),
@@ -77,7 +77,7 @@ def _sizes(model: Model, blocks: Sequence[Block]) -> BlockSizes:
 
 
 def odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
-    """Loads on blocks that cannot move, and at points outside of their block."""
+    """Warn about loads on fixed blocks and at points outside their block."""
     surface_loads = [("pressure", *one) for one in enumerate(case.pressure)] + [
         ("fill", *one) for one in enumerate(case.fill)
     ]
@@ -97,7 +97,7 @@ def odd_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
 
 
 def _loads_and_weight(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Iterator[CaseProblem]:
-    """Dead loads that press where it is mass that pushes, and live loads that are nothing beside the weight."""
+    """Warn about heavy dead loads without inertia, and about live loads that are negligible beside the weight."""
     weight = float(model.masses[~model.fixed].sum()) * case.gravity
     pattern = getattr(case.analysis, "pattern", None)
     pressing = [load for load in loads if load.dead and not (pattern == "mass" and load.weights.any())]
@@ -118,12 +118,12 @@ def _loads_and_weight(case: Case, model: Model, loads: Sequence[AppliedLoad]) ->
 
 
 def _size(load: AppliedLoad) -> float:
-    """Resultant of a load [N]."""
+    """Return the magnitude of a load's resultant [N]."""
     return math.hypot(*load.resultant.tolist())
 
 
 def _slivers(case: Case, model: Model, blocks: Sequence[Block]) -> Iterator[CaseProblem]:
-    """Walls of which ends or openings leave pieces below a quarter of a block: one warning each, with the smallest."""
+    """Warn about walls with pieces below a quarter of a block at ends or openings, once per wall."""
     for i, wall in enumerate(case.structure):
         if wall.kind != "wall":
             continue
@@ -140,7 +140,7 @@ def _slivers(case: Case, model: Model, blocks: Sequence[Block]) -> Iterator[Case
 
 
 def _full_block(case: Case, wall: Any, block: Block) -> float:
-    """Volume of a full block in the course of a block of a wall, in the plane its area [m^d]."""
+    """Return the volume of a full block in the course of a block of a wall, in the plane its area [m^d]."""
     k = block.course - 1
     length = wall.course_lengths[k] if k < len(wall.course_lengths) else wall.block[0]
     height = wall.course_heights[k] if k < len(wall.course_heights) else wall.block[1]
@@ -148,12 +148,12 @@ def _full_block(case: Case, wall: Any, block: Block) -> float:
 
 
 def _is_unit(force: float) -> bool:
-    """Whether a force is a power of ten, as where the multiplier is the load itself."""
+    """Test whether a force is a power of ten, a unit load that makes the multiplier the load itself."""
     return math.log10(force).is_integer()
 
 
 def _unused_joints(case: Case) -> Iterator[CaseProblem]:
-    """Joints that lie between no two materials, nor in stones: most often an [[interface]] is missing."""
+    """Warn about joints between no two materials: most often an [[interface]] is missing."""
     names, by_material = joint_table(case)
     within = {table.cracks.joint for table in case.structure if table.cracks is not None}
     within |= {table.head for table in case.joints.values() if table.head is not None}
@@ -163,7 +163,7 @@ def _unused_joints(case: Case) -> Iterator[CaseProblem]:
 
 
 def _no_heads(case: Case, model: Model) -> Iterator[CaseProblem]:
-    """Head joints of their own where no block lies in a course: they change nothing."""
+    """Warn about head joint definitions where no block lies in a course, so that they have no effect."""
     for name, table in case.joints.items():
         if table.head is not None and not len(model.courses):
             message = (
@@ -173,7 +173,7 @@ def _no_heads(case: Case, model: Model) -> Iterator[CaseProblem]:
 
 
 def _loose_cracks(case: Case) -> Iterator[CaseProblem]:
-    """Joints within stones that hold no tension: the stones are in pieces from the start."""
+    """Warn about cracked stones whose joints have no tensile strength."""
     for i, table in enumerate(case.structure):
         if table.cracks is None:
             continue
@@ -184,7 +184,7 @@ def _loose_cracks(case: Case) -> Iterator[CaseProblem]:
 
 
 def _loose_ends(case: Case) -> Iterator[CaseProblem]:
-    """Stones that lie aslant at free ends: whether they stand is the first question."""
+    """Warn about slanting stones at free ends, which may not stand."""
     if case.analysis.kind == "gravity":
         return
     for i, table in enumerate(case.structure):
@@ -199,7 +199,7 @@ def _loose_ends(case: Case) -> Iterator[CaseProblem]:
 
 
 def _unspanned(case: Case) -> Iterator[CaseProblem]:
-    """Openings drawn in an outline that are cut out of the masonry, and nothing more."""
+    """Warn about openings of an outline that have neither lintel nor arch."""
     for i, table in enumerate(case.structure):
         if isinstance(table, Outlined) and table.outline is not None and (names := table.outline.unspanned):
             more = f" and {len(names) - 1} more have" if len(names) > 1 else " has"
@@ -209,14 +209,14 @@ def _unspanned(case: Case) -> Iterator[CaseProblem]:
 
 
 def _unsaid(case: Case) -> Iterator[CaseProblem]:
-    """Notes on assumptions of structures that might be otherwise."""
+    """Warn about assumptions of structures that the case does not state."""
     for i, table in enumerate(case.structure):
         for key, message in unsaid(table):
             yield CaseProblem(("structure", i, key), message)
 
 
 def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
-    """Loads at points further from their block than the structure is large."""
+    """Report loads at points further from their block than the structure is large."""
     low, high = (limit(undeformed(model), axis=0) for limit in (np.min, np.max))
     size = np.hypot.reduce(high - low)
     for i in range(len(case.load)):
@@ -228,7 +228,7 @@ def _far_loads(case: Case, model: Model) -> Iterator[CaseProblem]:
 
 
 def _away(case: Case, model: Model, i: int, enough: float) -> float:
-    """How far a load acts from its block [m]; 0 within it and near a corner, by `enough`: the rest takes a solver."""
+    """Return the distance of a load from its block [m]; 0 within it and near a corner, by `enough`."""
     load = case.load[i]
     chosen = model.chosen(load.selected, False)
     if load.at is None or load.falls or len(chosen) != 1:
@@ -242,7 +242,7 @@ def _away(case: Case, model: Model, i: int, enough: float) -> float:
 
 
 def _soft_joints(case: Case, model: Model) -> Iterator[CaseProblem]:
-    """Joints of a given kn on which the blocks that have them sink too far under their own weight."""
+    """Report joints whose normal stiffness kn lets their blocks sink too far under self-weight."""
     names, by_material = joint_table(case)
     for k, name in enumerate(names):
         kn = case.joints[name].kn
@@ -254,7 +254,7 @@ def _soft_joints(case: Case, model: Model) -> Iterator[CaseProblem]:
 
 
 def _soft_blocks(case: Case, model: Model) -> Iterator[CaseProblem]:
-    """Materials of a Young's modulus so low that their blocks are squeezed flat by their own weight."""
+    """Report materials whose Young's modulus is so low that self-weight crushes their blocks."""
     for k, (name, material) in enumerate(case.materials.items()):
         young, having = material.moduli[0], (model.block_material == k) & ~model.fixed
         if math.isfinite(young) and having.any():
@@ -266,7 +266,8 @@ def _soft_blocks(case: Case, model: Model) -> Iterator[CaseProblem]:
 def _sinking(
     model: Model, having: np.ndarray, kn: float, edge: float, said: str, units: dict[str, float]
 ) -> str | None:
-    """Why a stiffness [Pa/m] is too small for the weight of these blocks, (n_blocks,) bool; None: it is not.
+    """Return a message where a stiffness [Pa/m] is too small for the weight of blocks (n_blocks,) bool; None: it is
+    not.
 
     A lower estimate: their whole weight on joints as long as they are wide together, in median smallest edges [m].
     said: the value as users gave it; units: others that may have been meant, and one of them in that of the case.

@@ -1,4 +1,4 @@
-"""Selection of blocks by the names in a case: ids, aliases, patterns, groups, structures and their courses.
+"""Resolve names of blocks in a case: ids, aliases, patterns, groups, structures and their courses.
 
 Everything in a case that names blocks is looked up here, once; models keep what was found (`Model.selections`).
 """
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class NoSuchBlocks(ValueError):
-    """A name that stands for no block; `keys`: below the table that is looked up."""
+    """Error for a name that matches no block; `keys`: below the table that is looked up."""
 
     def __init__(self, message: str, *keys: str | int):
         super().__init__(message)
@@ -32,7 +32,7 @@ class NoSuchBlocks(ValueError):
 
 
 class BlockNames:
-    """Every name by which the blocks of a case are called.
+    """Index of every name by which a case can refer to blocks.
 
     case       with its structures and [groups]
     blocks     all of them
@@ -49,7 +49,7 @@ class BlockNames:
 
     @cached_property
     def of_structures(self) -> dict[str, list[Block]]:
-        """Blocks of each structure."""
+        """Blocks of each structure by its id."""
         found: dict[str, list[Block]] = {table.id: [] for table in self.case.structure}
         for block in self.blocks:
             if block.path[:1] == ("structure",):
@@ -58,11 +58,11 @@ class BlockNames:
 
     @property
     def known(self) -> list[str]:
-        """Names that may be given, groups first."""
+        """All names that may be given, groups first."""
         return [*self.case.groups, *self.single]
 
     def named(self, name: str, within: tuple[str, ...] = ()) -> tuple[str, ...]:
-        """Ids of the blocks that a name stands for: of a block, an alias, a group or a pattern. Raises NoSuchBlocks.
+        """Return the ids of the blocks with a name: of a block, an alias, a group or a pattern. Raises NoSuchBlocks.
 
         within: groups that are looked up already, of which this is a part.
         """
@@ -75,7 +75,7 @@ class BlockNames:
         raise NoSuchBlocks(unknown_name("block", name, self.known))
 
     def group(self, name: str, within: tuple[str, ...] = ()) -> tuple[str, ...]:
-        """Ids of the blocks of a group, each once. Raises NoSuchBlocks, with the number of the member."""
+        """Return the ids of the blocks of a group, each once. Raises NoSuchBlocks, with the number of the member."""
         found: dict[str, None] = {}
         for k, member in enumerate(self.case.groups[name]):
             try:
@@ -91,7 +91,7 @@ class BlockNames:
         return tuple(found)
 
     def of_member(self, member: GroupMember) -> tuple[str, ...]:
-        """Ids of the blocks of a table in a group. Raises NoSuchBlocks."""
+        """Return the ids of the blocks that a table in a group selects. Raises NoSuchBlocks."""
         ids = self.ids if member.structure is None else self.of_structure(member.structure, member.course)
         if member.box is None:
             return tuple(ids)
@@ -106,7 +106,7 @@ class BlockNames:
         return found
 
     def of_structure(self, structure: str, course: Courses = None) -> tuple[str, ...]:
-        """Ids of the blocks of a structure, or of some of its courses. Raises NoSuchBlocks."""
+        """Return the ids of the blocks of a structure, or of some of its courses. Raises NoSuchBlocks."""
         if structure not in self.of_structures:
             raise NoSuchBlocks(unknown_name("structure", structure, list(self.of_structures)), "structure")
         blocks = self.of_structures[structure]
@@ -121,7 +121,7 @@ class BlockNames:
         return found
 
     def _like(self, pattern: str) -> tuple[str, ...]:
-        """Ids of the blocks whose id or alias is like a pattern, in the order of the model."""
+        """Return the ids of the blocks whose id or alias matches a pattern, in the order of the model."""
         signs = {"*": ".*", "?": "."}
         matching = re.compile("".join(signs.get(letter, re.escape(letter)) for letter in pattern)).fullmatch
         by_alias = {name for alias, name in self.aliases.items() if matching(alias)}
@@ -135,7 +135,7 @@ class BlockNames:
 
 
 class Selections:
-    """All selections of a case: `found`, {name: ids of the blocks}, and `problems`."""
+    """All block selections of a case: `found`, {name: ids of the blocks}, and `problems`."""
 
     def __init__(self, names: BlockNames):
         self.names, self.case = names, names.case
@@ -154,7 +154,7 @@ class Selections:
             self._add_all(("damping",), {"block": self.case.damping.block})
 
     def several(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
-        """What a model keeps: the selections that are not the name of one block."""
+        """Selections that the model keeps, all but the names of single blocks."""
         return tuple((name, ids) for name, ids in self.found.items() if name not in self.names.single)
 
     def _add_table(self, path: KeyPath, table: Selection) -> None:
@@ -168,7 +168,7 @@ class Selections:
                 self.problems.append(CaseProblem((*path, *error.keys), str(error)))
 
     def _add_all(self, path: KeyPath, names: Sequence[str] | Mapping[str, str]) -> None:
-        """Names in a list, or under keys."""
+        """Resolve names in a list or under keys, and record the problems."""
         for key, name in names.items() if isinstance(names, Mapping) else enumerate(names):
             try:
                 self.found[name] = self.names.named(name)
@@ -178,7 +178,7 @@ class Selections:
 
 
 def _odd_groups(names: BlockNames) -> Iterator[CaseProblem]:
-    """Groups that cannot be told from blocks, and members of groups that are nothing."""
+    """Report groups with the name of a block, and members of groups that match nothing."""
     for name in names.case.groups:
         if name in names.single:
             message = f"{show(name)} is the name of a block already; give the group another"

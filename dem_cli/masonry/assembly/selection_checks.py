@@ -1,4 +1,4 @@
-"""Checks of selected blocks: supports where these are moved, one block where one is meant."""
+"""Check selected blocks: fixed ones where supports move, one block where one is required."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NOT_FREE = "only blocks that can move have a start"
 
 
 def problems(case: Case, model: Model) -> Iterator[CaseProblem]:
-    """What is wrong with the blocks that tables are about."""
+    """Report tables whose selected blocks are fixed, free or several where they must not be."""
     for i, settlement in enumerate(case.settlement):
         yield from _of_kind(
             model, _key(("settlement", i), settlement), (settlement.selected, settlement.said), True, NOT_FIXED
@@ -47,14 +47,14 @@ def problems(case: Case, model: Model) -> Iterator[CaseProblem]:
 
 
 def _key(path: KeyPath, table: Selection) -> KeyPath:
-    """The key that selects."""
+    """Return the path of the key that selects blocks."""
     return (*path, "block" if table.block is not None else "structure")
 
 
 def _of_kind(
     model: Model, path: KeyPath, named: tuple[str | None, str], fixed: bool, why: str
 ) -> Iterator[CaseProblem]:
-    """Blocks that can move where supports are meant, or the other way round; named: to the model, and in messages."""
+    """Report free blocks where supports are required, or the other way round; named: in the model, and in messages."""
     name, said = named
     chosen = model.chosen(name, fixed)
     if (model.fixed[chosen] == fixed).all():
@@ -67,7 +67,7 @@ def _of_kind(
 
 
 def _only_one(model: Model, path: KeyPath, name: str) -> Iterator[CaseProblem]:
-    """Several blocks where one is meant."""
+    """Report a selection of several blocks where one is required."""
     chosen = model.chosen(name)
     if len(chosen) > 1:
         listed = listing([model.block_ids[i] for i in chosen])

@@ -1,4 +1,4 @@
-"""Solver request: what a case asks of the solvers, taken out of its tables."""
+"""Collect what the solvers need to know of a case, independent of its tables."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def solver_request(case: Case) -> SolverRequest:
-    """What a case asks of the solvers."""
+    """Create the solver request of a case: joints, analysis, gravity, damping and supports."""
     return SolverRequest(
         joints=_joints(case),
         analysis=_analysis(case.analysis),

@@ -1,4 +1,4 @@
-"""Surface loads: the forces at points that [[pressure]] and [[fill]] of a case come to: water, earth, wind.
+"""Convert [[pressure]] and [[fill]] of a case, the pressure of water, earth or wind, to forces at points.
 
 Pressures that are linear in height become forces at the points of a quadrature that is exact for them: their sum and
 their moments are those of the integral.
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class SoilStress(NamedTuple):
-    """A state of stress that is linear in depth: of earth, of a fluid, or the same everywhere."""
+    """Stress state linear in depth: of earth, of a fluid, or uniform."""
 
     at_level: float  # vertical stress there [Pa]
     per_depth: float  # [Pa/m]
@@ -37,12 +37,12 @@ class SoilStress(NamedTuple):
     wall_friction: float = 0.0  # shear downwards over horizontal stress on upright faces [-]
 
     def vertical(self, points: np.ndarray) -> np.ndarray:
-        """Vertical stress at points (n, d) [Pa], (n,)."""
+        """Compute the vertical stress at points (n, d) [Pa], (n,)."""
         depth = 0.0 if self.level is None else self.level - points[:, -1]
         return self.at_level + self.per_depth * depth * np.ones(len(points))
 
     def traction(self, normal: np.ndarray) -> np.ndarray:
-        """Force per area of a face with that outward normal (d,), at a vertical stress of 1 [-], (d,)."""
+        """Compute the traction on a face with outward normal (d,) at a vertical stress of 1 [-], (d,)."""
         found = -self.sideways * normal
         found[-1] = -normal[-1] if self.from_below else -max(normal[-1], 0.0)
         found[-1] -= self.sideways * self.wall_friction * np.hypot.reduce(normal[:-1])
@@ -50,7 +50,7 @@ class SoilStress(NamedTuple):
 
 
 def pressure(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath, table: Pressure) -> AppliedLoad:
-    """Forces of a pressure on exposed faces that look the way it says."""
+    """Compute the point forces of a pressure on the exposed faces with the required orientation."""
     assert surfaces is not None  # applied_loads
     looking, key = np.ones(len(surfaces.normals), bool), "face" if table.facing is None else "facing"
     if table.face != "all":
@@ -76,7 +76,7 @@ def pressure(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath,
 
 
 def _stress(case: Case, table: Pressure) -> tuple[SoilStress, str]:
-    """The state of stress of a pressure, and the key that says how high it reaches."""
+    """Return the stress state of a [[pressure]] table, and the key that sets its upper level."""
     if table.fluid is not None:
         return SoilStress(0.0, table.fluid.density * case.gravity, table.fluid.level), "fluid"
     if table.earth is not None:
@@ -88,7 +88,7 @@ def _stress(case: Case, table: Pressure) -> tuple[SoilStress, str]:
 
 
 def fill(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath, table: Fill) -> AppliedLoad:
-    """Weight of earth on faces that look up, and its thrust on inclined and upright ones."""
+    """Compute the weight of fill on faces that look up, and its thrust on inclined and upright ones."""
     assert surfaces is not None  # applied_loads
     blocks = model.chosen(table.selected, False)
     looking = surfaces.normals[:, -1] > (-LOOKS_UP if table.sideways else LOOKS_UP)
@@ -111,7 +111,7 @@ def fill(case: Case, model: Model, surfaces: Surfaces | None, path: KeyPath, tab
 
 
 def _extent(model: Model, blocks: np.ndarray, table: Fill) -> tuple[tuple[np.ndarray, np.ndarray], float]:
-    """Upright half-spaces that fill lies in, and what is small beside it [m].
+    """Return the upright half-spaces that bound the fill, and the length that counts as zero beside it [m].
 
     Given, or the convex hull of the blocks as seen from above: it turns with them.
     """
@@ -133,7 +133,7 @@ def _extent(model: Model, blocks: np.ndarray, table: Fill) -> tuple[tuple[np.nda
 def _stressed(
     model: Model, path: KeyPath, pieces: Sequence[SurfacePiece], stress: SoilStress, levels: tuple[float, float]
 ) -> AppliedLoad | None:
-    """Forces of a state of stress on pieces of faces between two heights; None where there is nothing."""
+    """Integrate a stress state over pieces of faces between two heights; None where there is none."""
     up = np.eye(model.dimension)[-1]
     normals = np.array([-up, up])[np.isfinite(levels)]
     offsets = np.array([-levels[0], levels[1]])[np.isfinite(levels)]

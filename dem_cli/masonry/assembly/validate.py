@@ -1,4 +1,4 @@
-"""Validation of the geometry: mistakes that stop a run, and oddities that only deserve a word."""
+"""Validate the geometry: errors that stop a run, and oddities that only give a warning."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Neighbours(NamedTuple):
 
 
 def problems(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
-    """Everything that makes the geometry unusable; `blocks` in the order of the model."""
+    """Report every error of the geometry; `blocks` in the order of the model."""
     found = shape_problems(model, blocks)
     if found:
         return found
@@ -78,7 +78,7 @@ def problems(case: Case, model: Model, blocks: Sequence[Block]) -> list[CaseProb
 
 
 def monitor_problems(case: Case, model: Model) -> list[CaseProblem]:
-    """Monitors where there is no block, of blocks that share no joint, of links that there are not, of nothing held."""
+    """Report monitors of missing blocks, joints or links, and reaction monitors of blocks that nothing restrains."""
     low, high = (limit(undeformed(model), axis=0).round(6).tolist() for limit in (np.min, np.max))
     return (
         link_problems(case, model)
@@ -97,7 +97,7 @@ def monitor_problems(case: Case, model: Model) -> list[CaseProblem]:
 
 
 def link_problems(case: Case, model: Model) -> list[CaseProblem]:
-    """Monitors of ties and bars that the case has not, or beyond the end of a bar, and names that are used twice."""
+    """Report monitors of missing ties and bars or beyond the end of a bar, and names used twice."""
     found, links = list[CaseProblem](), list(each(model.links, model.link_names))
     for i, monitor in enumerate(case.monitor):
         for key, name in (("tie", monitor.tie), ("bar", monitor.bar)):
@@ -116,7 +116,7 @@ def link_problems(case: Case, model: Model) -> list[CaseProblem]:
 
 
 def held_problems(case: Case, model: Model) -> list[CaseProblem]:
-    """Monitors of reactions of blocks that nothing holds."""
+    """Report reaction monitors of blocks that are neither fixed nor restrained."""
     return [
         CaseProblem(
             ("monitor", i, "quantity"),
@@ -128,7 +128,7 @@ def held_problems(case: Case, model: Model) -> list[CaseProblem]:
 
 
 def cut_problems(case: Case, model: Model) -> list[CaseProblem]:
-    """Cuts that are no line or plane polygon, that pass through no joint, or whose height ends where no block is."""
+    """Report cut monitors that are no line or plane polygon, cross no joint, or end outside the blocks."""
     found, joints = list[CaseProblem](), None
     for i, monitor in enumerate(case.monitor):
         if monitor.cut is None:
@@ -161,7 +161,7 @@ def cut_problems(case: Case, model: Model) -> list[CaseProblem]:
 
 
 def shared_problems(case: Case, model: Model) -> list[CaseProblem]:
-    """Monitors of the joint of two blocks that share none."""
+    """Report monitors of the joint between two blocks that share none."""
     wanted = [(i, monitor.between) for i, monitor in enumerate(case.monitor) if monitor.between is not None]
     if not wanted:
         return []
@@ -178,7 +178,7 @@ def shared_problems(case: Case, model: Model) -> list[CaseProblem]:
 
 
 def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
-    """Profiles that are too steep on a joint that has them, or that no joint of this dimension can have."""
+    """Report joint profiles that are too steep, or impossible in this dimension."""
     profiles = {name: table.profile for name, table in case.joints.items() if getattr(table, "profile", None)}
     if not profiles:
         return []
@@ -199,7 +199,7 @@ def profile_problems(case: Case, model: Model) -> list[CaseProblem]:
 
 
 def warnings(model: Model) -> list[str]:
-    """Notes on geometry that makes a run slow or inexact without being wrong."""
+    """Return warnings about geometry that makes a run slow or inexact without being wrong."""
     free = ~model.fixed
     if not free.any():
         return ["every block is fixed: nothing can move"]
@@ -217,7 +217,7 @@ def warnings(model: Model) -> list[str]:
 
 
 def _remote(model: Model, size: float) -> list[str]:
-    """Coordinates of 16 digits, of which the distance from the origin takes too many to say what touches.
+    """Warn about coordinates so far from the origin that 16 digits cannot resolve which blocks touch.
 
     Solvers count coordinates from the structure (model.scales.origin_of); what the case says cannot be mended.
     """
@@ -233,12 +233,12 @@ def _remote(model: Model, size: float) -> list[str]:
 
 
 def _widths(model: Model) -> np.ndarray:
-    """About the smallest side of each part [m], (n_parts,)."""
+    """Estimate the smallest side of each part [m], (n_parts,)."""
     return shapes_of(model.vertices).widths(model.vertices, model.part_starts, model.topology)
 
 
 def _slivers(slim: np.ndarray, names: Sequence[str]) -> list[str]:
-    """`slim`: width over the diagonal, of each part."""
+    """Warn about parts whose width is tiny compared with their diagonal, (n_parts,)."""
     wrong = np.nonzero(slim < SLIVER_WIDTH)[0]
     if not wrong.size:
         return []
@@ -256,7 +256,7 @@ def _spread(what: str, values: np.ndarray, names: Sequence[str], limit: float) -
 
 
 def _kinks(model: Model) -> list[str]:
-    """Blocks that lie on both sides of a kink which contact cannot tell from a plane."""
+    """Warn about blocks on both sides of a kink so shallow that contact treats it as a plane."""
     reach = TOUCHING_GAP * smallest_edge(model)
     blocks, areas = geometry_of(model.dimension).left_out(model, undeformed(model), reach)
     if not len(blocks):
@@ -271,7 +271,7 @@ def _kinks(model: Model) -> list[str]:
 
 
 def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
-    """Parts without area or not convex, and blocks without a mass that can be computed with."""
+    """Report parts that have no area or are not convex, and blocks whose mass is out of range."""
     least = polygon.ROUND_OFF * functions.power(model.parts.sizes, model.dimension)
     flat = model.parts.volumes <= least
     shapes = shapes_of(model.vertices)
@@ -292,7 +292,7 @@ def shape_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
 
 
 def crowd_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
-    """Blocks that lie in the same place by the hundred: too many to compare each with each."""
+    """Report hundreds of blocks in the same place, too many to compare pairwise."""
     found = crowd(undeformed(model), model.part_starts)
     if found is None:
         return []
@@ -302,7 +302,7 @@ def crowd_problems(model: Model, blocks: Sequence[Block]) -> list[CaseProblem]:
 
 
 def overlap_problems(model: Model, blocks: Sequence[Block], near: Neighbours, note: str = "") -> list[CaseProblem]:
-    """Two blocks in the same place, the deepest first; two fixed ones may. `note` ends each message."""
+    """Report overlapping blocks, the deepest first; fixed ones may overlap. `note` ends each message."""
     a, b = near.blocks.T
     wrong = (near.separation < -DEEPEST_OVERLAP * near.scale) & (a != b) & ~(model.fixed[a] & model.fixed[b])
     found: list[tuple[tuple, str]] = []
@@ -322,7 +322,7 @@ def overlap_problems(model: Model, blocks: Sequence[Block], near: Neighbours, no
 
 
 def compound_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -> list[CaseProblem]:
-    """Parts of one block that overlap each other, or that do not hang together."""
+    """Report parts of one block that overlap or are not connected."""
     if model.n_parts == model.n_blocks:
         return []
     same = near.blocks[:, 0] == near.blocks[:, 1]
@@ -343,7 +343,7 @@ def compound_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -
 
 
 def support_problems(model: Model, blocks: Sequence[Block], near: Neighbours) -> list[CaseProblem]:
-    """Groups of blocks from which no chain of touching blocks leads to a fixed one."""
+    """Report groups of blocks without a chain of touching blocks to a fixed one."""
     touching = joined(near.separation, near.scale)
     group = _components(model.n_blocks, np.concatenate([near.blocks[touching], *_tied(model)]))
     held = np.zeros(model.n_blocks, bool)
@@ -361,7 +361,7 @@ def support_problems(model: Model, blocks: Sequence[Block], near: Neighbours) ->
 
 
 def _tied(model: Model) -> list[np.ndarray]:
-    """Pairs of blocks that links hold together; a fixed point holds as any support does, (n, 2) each."""
+    """Return the pairs of blocks that ties and bars connect; a fixed point counts as a support, (n, 2) each."""
     support = int(np.flatnonzero(model.fixed)[0])
     return [np.where(link.blocks < 0, support, link.blocks) for link in model.links]
 
@@ -374,7 +374,7 @@ def _neighbours(model: Model) -> Neighbours:
 
 
 def _components(n: int, pairs: np.ndarray) -> np.ndarray:
-    """The smallest number reachable from each of n nodes through the pairs, (n,)."""
+    """Label connected components: the smallest node reachable from each of n nodes through the pairs, (n,)."""
     label = np.arange(n)
     while True:
         before = label.copy()
@@ -387,7 +387,7 @@ def _components(n: int, pairs: np.ndarray) -> np.ndarray:
 
 
 def _nearest_pair(model: Model, inside: np.ndarray) -> tuple[int, int, float]:
-    """Lowest block inside the group, the nearest block outside, and the distance of their boxes [m]."""
+    """Find the nearest block outside a group, with the lowest block inside and the distance of their boxes [m]."""
     corners = undeformed(model)
     starts = np.searchsorted(model.vertex_blocks, np.arange(model.n_blocks))
     low = np.minimum.reduceat(corners, starts, axis=0)
@@ -400,7 +400,7 @@ def _nearest_pair(model: Model, inside: np.ndarray) -> tuple[int, int, float]:
 
 
 def _first_few(found: Sequence[tuple[tuple, str]], unsaid: int = 0) -> list[CaseProblem]:
-    """The first mistakes of a sort; the last one reported says how many more there are, with those not put in words."""
+    """Keep the first errors of a kind; the last one states how many more there are."""
     shown = [CaseProblem(path, message) for path, message in found[:SHOWN_MISTAKES]]
     rest = len(found) - SHOWN_MISTAKES + unsaid
     if rest > 0:

@@ -1,1 +1,1 @@
-"""Blocks of a case for other programs: OBJ, STL, glTF, compas JSON, DXF, and the input of LMGC90 and 3DEC."""
+"""Export blocks of a case to other programs: OBJ, STL, glTF, compas JSON, DXF, and input of LMGC90 and 3DEC."""

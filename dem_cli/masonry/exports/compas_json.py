@@ -1,4 +1,4 @@
-"""COMPAS JSON of the blocks: a list of meshes that `compas.json_load` reads, with supports, materials, densities.
+"""Export blocks as COMPAS JSON: meshes that `compas.json_load` reads, with supports, materials, densities.
 
 As compas 2.15 writes them (compas.datastructures.Mesh.__data__): attributes carry what compas_assembly and compas_dem
 call is_support, and name, material and density of the block. A compound is a mesh for each of its parts, of one name;
@@ -16,7 +16,7 @@ from dem_cli.masonry.exports.contents import ExportedBlock, ExportedCase
 
 
 def compas_json(exported: ExportedCase) -> str:
-    """The meshes of all parts of all blocks, in metres, z upwards."""
+    """Export the meshes of all parts of all blocks, in metres, z upwards."""
     density = {name: material.density for name, material in exported.case.materials.items()}
     meshes = [
         _mesh(block, part, density[block.material], f"{exported.name}/{block.name}/{k}")

@@ -1,4 +1,4 @@
-"""Contents of an exported case: blocks to the last bit as they were drawn, and what acts on them."""
+"""Contents of an exported case: exact blocks as drawn, and the loads on them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ NOT_CARRIED = (
 
 
 class ExportedBlock(NamedTuple):
-    """One block in space; blocks of a case in the plane are upright prisms, half of the thickness to either side."""
+    """Block of an exported case in space; a planar block becomes an upright prism around y = 0."""
 
     name: str
     material: str
@@ -36,7 +36,7 @@ class ExportedBlock(NamedTuple):
 
 
 class ExportedCase:
-    """A case in the words of other programs."""
+    """Case prepared for export: solids in space, forces, and what no export carries."""
 
     def __init__(self, case: Case, model: Model, blocks: Sequence[Block], name: str):
         self.case, self.model, self.blocks, self.name = case, model, blocks, name
@@ -54,7 +54,7 @@ class ExportedCase:
 
     @cached_property
     def forces(self) -> tuple[np.ndarray, np.ndarray]:
-        """Forces and moments about the centroids beside the weight, dead ones and live ones, (n_blocks, n_dof) each."""
+        """Dead and live forces and moments about the centroids beside self-weight, (n_blocks, n_dof) each."""
         model, d = self.model, self.case.dimension
         dead = model.dead_loads.copy()
         dead[:, d - 1] += model.masses * self.case.gravity
@@ -63,7 +63,7 @@ class ExportedCase:
 
     @property
     def left_out(self) -> list[str]:
-        """What of the case is in no export: tables, joints within stones and in heads, friction of each joint."""
+        """List what no export carries: tables, joints within stones and in heads, friction of each joint."""
         tables = [f"[[{key}]]" for key in NOT_CARRIED if getattr(self.case, key, None)]
         joints = dict.fromkeys(block.crack for block in self.blocks if block.crack)
         return [
@@ -79,19 +79,19 @@ class ExportedCase:
 
     @property
     def deforms(self) -> bool:
-        """Whether blocks of any material deform."""
+        """Tell whether blocks of any material deform."""
         return any(
             material.young is not None and material.deformation != "none" for material in self.case.materials.values()
         )
 
     @property
     def leans(self) -> bool:
-        """Whether the live load is a share of the weight along a direction: gravity that leans."""
+        """Tell whether the live load is a share of the weight along a direction."""
         return getattr(self.case.analysis, "pattern", None) == "mass"
 
     @property
     def lean(self) -> np.ndarray:
-        """Direction of what is added to gravity times the load multiplier, unit or zero, (d,)."""
+        """Direction of the acceleration that the load multiplier adds to gravity, unit or zero, (d,)."""
         if not self.leans:
             return np.zeros(self.case.dimension)
         direction = np.array(self.case.analysis.direction, float)
@@ -99,15 +99,15 @@ class ExportedCase:
 
 
 def triangles(solid: polyhedron.Polyhedron) -> np.ndarray:
-    """Faces of a convex polyhedron in triangles, counter-clockwise seen from outside, (n, 3)."""
+    """Triangulate the faces of a convex polyhedron, counter-clockwise seen from outside, (n, 3)."""
     return np.array([(loop[0], a, b) for loop in solid.faces for a, b in zip(loop[1:-1], loop[2:])])
 
 
 def number(value: float) -> str:
-    """A number that is read back to the last bit."""
+    """Format a number exactly, so that it is read back to the last bit."""
     return repr(float(value) + 0.0)  # no negative zero
 
 
 def triple(point: np.ndarray, between: str = " ") -> str:
-    """Coordinates that are read back to the last bit."""
+    """Format coordinates exactly, so that they are read back to the last bit."""
     return between.join(number(value) for value in point)

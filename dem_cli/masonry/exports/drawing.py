@@ -1,4 +1,4 @@
-"""DXF drawing of a case in the plane, by ezdxf: a closed polyline for each block, on the layer of its material."""
+"""Export a case in the plane as a DXF drawing (ezdxf): a closed polyline per block, layers by material."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ NOT_IN_NAMES = '<>/\\":;?*=`|'  # of layers
 
 
 def dxf(exported: ExportedCase) -> str:
-    """The drawing in metres. Raises UsageError for a case in space."""
+    """Write the DXF drawing in metres. Raises UsageError for a case in space."""
     if exported.case.dimension == 3:
         raise UsageError("a DXF drawing is of a case in 2D; in 3D .obj, .glb and others have the blocks")
     try:

@@ -1,4 +1,4 @@
-"""Formats of exported cases by the end of a file's name: meshes, drawings, and the input of other programs."""
+"""Export formats by the ending of the file name: meshes, drawings, and input of other programs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Written = tuple[str | bytes, list[str]]  # what goes into the file, and what of 
 
 
 class ExportFormat(NamedTuple):
-    """A format that is written."""
+    """Export format with its description and writer."""
 
     what: str
     write: Callable[[ExportedCase, str], Written]  # a case, the name of the file
@@ -31,7 +31,7 @@ class ExportFormat(NamedTuple):
 def _plain(
     write: Callable[[ExportedCase], str | bytes], compounds: bool = True
 ) -> Callable[[ExportedCase, str], Written]:
-    """A format that carries all that it is asked for, beside what belongs together where it has no `compounds`."""
+    """Wrap a writer of a format that carries all blocks; notes compounds where it has none of them."""
     return lambda exported, file: (write(exported), [] if compounds else _apart(exported))
 
 
@@ -54,13 +54,13 @@ EXPORT_FORMATS = {
 
 
 def ending(path: Path) -> str | None:
-    """The format that a name ends in; None: one of others."""
+    """Return the export format of a file name; None: not one of these."""
     name = path.name.lower()
     return next((suffix for suffix in EXPORT_FORMATS if name.endswith(suffix)), None)
 
 
 def write_case(path: Path, exported: ExportedCase) -> list[str]:
-    """Writes a case; .vtu and what is not known here goes to meshio. Returns what of it the format does not carry.
+    """Export a case to a file; .vtu and unknown endings go to meshio. Returns what the format does not carry.
 
     Raises UsageError, OutputError.
     """

@@ -1,4 +1,4 @@
-"""glTF 2.0 of the blocks, for viewers and game engines: .glb, or .gltf with its numbers inside; y upwards, in metres.
+"""Export blocks as glTF 2.0 for viewers and game engines: .glb, or .gltf with its numbers inside; y upwards, in metres.
 
 A node with a mesh of flat triangles for each block, under its name; a colour for each material, fixed blocks as ground.
 Source: Khronos Group, glTF 2.0 Specification. Written here: the libraries for it bring more than these two chunks.
@@ -22,7 +22,7 @@ _FLOAT, _TRIANGLES, _VERTEX_DATA = 5126, 4, 34962
 
 
 def glb(exported: ExportedCase) -> bytes:
-    """A binary glTF file."""
+    """Write a binary glTF file."""
     data, numbers = _scene(exported)
     text = json.dumps(data, ensure_ascii=False).encode()
     chunks = [(JSON_CHUNK, text + b" " * (-len(text) % 4)), (BINARY_CHUNK, numbers)]
@@ -31,7 +31,7 @@ def glb(exported: ExportedCase) -> bytes:
 
 
 def gltf(exported: ExportedCase) -> bytes:
-    """A glTF file of text."""
+    """Write a glTF file as text."""
     data, numbers = _scene(exported)
     data["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(numbers).decode()
     return json.dumps(data, ensure_ascii=False).encode()
@@ -73,7 +73,7 @@ def _scene(exported: ExportedCase) -> tuple[dict[str, Any], bytes]:
 
 
 def _flat(block: ExportedBlock) -> tuple[np.ndarray, np.ndarray]:
-    """Corners and normals of all triangles of a block, y upwards, each (n, 3)."""
+    """Return corners and normals of all triangles of a block, y upwards, each (n, 3)."""
     corners = np.concatenate([part.vertices[triangles(part)] for part in block.parts])
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)

@@ -1,4 +1,4 @@
-"""3DEC input (Itasca, version 7 and later): a data file that builds the blocks, their joints, supports and gravity.
+"""Export a 3DEC data file (Itasca, version 7 and later) that builds blocks, joints, supports and gravity.
 
 Commands as the manual of 3DEC 7.0 has them: `block create polyhedron` (faces clockwise seen from outside, & goes on
 in the next line: Creating Single Blocks), `block property`, `block fix`, `block contact generate-subcontacts`, `block
@@ -19,7 +19,7 @@ AUTO_STIFFNESS = 1e4  # kn times the size of a block over its mean pressure unde
 
 
 def itasca_3dec(exported: ExportedCase) -> tuple[str, list[str]]:
-    """The data file, and what of the case it does not carry."""
+    """Write the 3DEC data file; also returns what it does not carry."""
     case, notes = exported.case, not_carried(exported)
     lines = [f"; {case.title}: {len(exported.solids)} blocks, written by dem for 3DEC 7"]
     lines += ["; Not run by those who wrote it: compare its masses with those that `dem check` prints."]
@@ -32,7 +32,7 @@ def itasca_3dec(exported: ExportedCase) -> tuple[str, list[str]]:
 
 
 def not_carried(exported: ExportedCase) -> list[str]:
-    """Forces, compounds that have to be joined, and what joints and analysis have beside Mohr-Coulomb."""
+    """List the forces, compounds and joint properties that the 3DEC file does not carry."""
     case = exported.case
     known = ("coulomb", "mohr-coulomb")
     notes = [
@@ -60,7 +60,7 @@ def _block(block: ExportedBlock) -> list[str]:
 
 
 def _quoted(name: str) -> str:
-    """A name as a string of 3DEC, in which there is no sign for an apostrophe."""
+    """Quote a name for 3DEC, replacing apostrophes."""
     return "'" + name.replace("'", "_") + "'"
 
 
@@ -73,7 +73,7 @@ def _properties(exported: ExportedCase) -> list[str]:
 
 
 def _joints(exported: ExportedCase) -> list[str]:
-    """Properties of the first joint for all contacts and those to come, then of each pair of materials."""
+    """Write the properties of the first joint for all contacts, then those of each pair of materials."""
     case = exported.case
     names = [name for name in case.materials if any(block.material == name for block in exported.blocks)]
     default = next(iter(case.joints))
@@ -102,7 +102,9 @@ def _values(exported: ExportedCase, name: str) -> str:
 
 
 def _automatic(exported: ExportedCase) -> float:
-    """A stiffness for kn = "auto" [Pa/m], rounded: so stiff that a block sinks in by 1e-4 of its size under itself."""
+    """Choose a stiffness for kn = "auto" [Pa/m] such that a block sinks by 1e-4 of its size under self-weight,
+    rounded.
+    """
     density = np.median([exported.case.materials[block.material].density for block in exported.blocks])
     return float(f"{AUTO_STIFFNESS * exported.case.gravity * float(density):.2g}")
 

@@ -1,4 +1,4 @@
-"""LMGC90 input: a Python script for pylmgc90 that writes DATBOX, and with the argument `run` goes through time.
+"""Export an LMGC90 script for pylmgc90 that writes DATBOX and, with the argument `run`, runs the simulation.
 
 Rigid bodies (RBDY3 with POLYR contactors, RBDY2 with POLYG), fixed ones with imposed velocities of zero, the friction
 of each pair of materials as IQS_CLB, gravity, forces. Moments are written in the plane alone: in space the components 4
@@ -110,7 +110,7 @@ if "run" in sys.argv[1:]:
 
 
 def lmgc90(exported: ExportedCase, file: str) -> tuple[str, list[str]]:
-    """The script, and what of the case it does not carry. file: its name."""
+    """Write the LMGC90 script named `file`; also returns what it does not carry."""
     case, notes = exported.case, not_carried(exported)
     live = "weight along " + str(exported.lean.tolist()) if exported.leans else "the live forces of the case"
     head = _HEAD.format(
@@ -132,7 +132,7 @@ def lmgc90(exported: ExportedCase, file: str) -> tuple[str, list[str]]:
 
 
 def not_carried(exported: ExportedCase) -> list[str]:
-    """What joints and analysis have that rigid bodies with Coulomb friction have not."""
+    """List the joint and analysis properties that rigid bodies with Coulomb friction lack."""
     case = exported.case
     notes = [
         f"joint '{name}': of law '{joint.law}' only its friction" for name, joint in case.joints.items()
@@ -148,7 +148,7 @@ def not_carried(exported: ExportedCase) -> list[str]:
 
 
 def _turned(exported: ExportedCase) -> list[str]:
-    """Free blocks in space on which forces have a moment."""
+    """Warn about free blocks in space on which forces have a moment."""
     if exported.case.dimension == 2:
         return []
     forces = np.abs(np.stack(exported.forces))
@@ -161,7 +161,7 @@ def _stiff(exported: ExportedCase) -> bool:
 
 
 def _kinds(exported: ExportedCase) -> dict[tuple[str, float], int]:
-    """Materials of LMGC90: those of the case, in the plane one for each thickness, for it knows none."""
+    """List the LMGC90 materials: those of the case, in the plane one for each thickness."""
     thick = 1.0 if exported.case.dimension == 3 else None
     return {key: k for k, key in enumerate(dict.fromkeys((b.material, thick or b.thickness) for b in exported.blocks))}
 
@@ -192,7 +192,7 @@ def _bodies(exported: ExportedCase) -> list[str]:
 
 
 def _laws(exported: ExportedCase) -> list[str]:
-    """A law for each joint, and which colours see each other."""
+    """Write a contact law for each joint, and the pairs of colours that interact."""
     case, dim = exported.case, exported.case.dimension
     lines, laws = [], {}
     for k, (name, joint) in enumerate(case.joints.items()):

@@ -1,4 +1,4 @@
-"""Meshes of the blocks with their names: OBJ with an object for each block, STL with a solid for each."""
+"""Export blocks as named meshes: OBJ with an object for each block, STL with a solid for each."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dem_cli.masonry.exports.contents import ExportedCase, triangles, triple
 
 
 def obj(exported: ExportedCase) -> str:
-    """Wavefront OBJ, z upwards, in metres; parts of a compound are groups of its object."""
+    """Write Wavefront OBJ, z upwards, in metres; parts of a compound are groups of its object."""
     lines = [f"# {exported.name}: {len(exported.solids)} blocks, metres, z upwards"]
     first = 1
     for block in exported.solids:
@@ -22,7 +22,7 @@ def obj(exported: ExportedCase) -> str:
 
 
 def stl(exported: ExportedCase) -> str:
-    """ASCII STL, z upwards, in metres."""
+    """Write ASCII STL, z upwards, in metres."""
     lines = []
     for block in exported.solids:
         lines.append(f"solid {block.name}")

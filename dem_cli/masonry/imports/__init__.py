@@ -1,1 +1,1 @@
-"""Files of other programs that hold blocks: STL, OBJ, PLY, compas JSON, DXF and SVG, read into corners and faces."""
+"""Import blocks of other programs, STL, OBJ, PLY, compas JSON, DXF and SVG, as corners and faces."""

@@ -1,4 +1,4 @@
-"""COMPAS JSON files: meshes as blocks, from compas, compas_assembly, compas_model and compas_dem.
+"""Import meshes of COMPAS JSON files from compas, compas_assembly, compas_model and compas_dem as blocks.
 
 What `compas.json_dump` writes: {"dtype": "compas.datastructures/Mesh", "data": {"vertex": {key: {x, y, z}}, "face":
 {key: [keys]}, "attributes": {}}, "name": ...}, alone, in lists, as blocks of an Assembly, as geometry of the elements
@@ -23,7 +23,7 @@ POLYHEDRON, BOX = "compas.geometry/Polyhedron", "compas.geometry/Box"
 
 
 def read(path: Path) -> Contents:
-    """The meshes of a file in its order. Raises FileProblem."""
+    """Read the meshes of a COMPAS file in its order. Raises FileProblem."""
     try:
         data = json.loads(path.read_text(encoding="utf-8-sig"))
         found = list(_meshes(data, {}))
@@ -45,7 +45,7 @@ def _density(name: str, value: Any) -> float:
 
 
 def _materials(value: Any) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Materials of a model by their guid."""
+    """Yield the materials of a COMPAS model by their guid."""
     data = value.get("data") if isinstance(value, dict) else None
     found = data.get("materials") if isinstance(data, dict) else None
     for guid, each in found.items() if isinstance(found, dict) else ():
@@ -54,7 +54,7 @@ def _materials(value: Any) -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 def _meshes(value: Any, said: dict[str, Any]) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
-    """Every mesh and what is said about it around it: name, is_support, material, transformation."""
+    """Yield every mesh with the attributes around it: name, is_support, material, transformation."""
     if isinstance(value, list):
         for item in value:
             yield from _meshes(item, said)
@@ -95,7 +95,7 @@ def _body(found: tuple[dict[str, Any], dict[str, Any]], materials: dict[str, str
 
 
 def _layer(material: Any, materials: dict[str, str]) -> str:
-    """Name of a material, given as such, by its guid in the model, or in full."""
+    """Return the name of a material given as text, by its guid in the model, or in full."""
     if isinstance(material, dict):
         within = material.get("data")
         return str((within.get("name") if isinstance(within, dict) else None) or material.get("name") or "")

@@ -1,4 +1,4 @@
-"""Contents of a geometry file: blocks as corners and faces, or as outlines, with the names that the file gives them."""
+"""Contents of a geometry file: blocks as corners and faces, or as outlines, with their names."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.304
 
 
 class FileProblem(ValueError):
-    """A geometry file that cannot be read, or holds no blocks: one message, without the name of the file."""
+    """Error of a geometry file that cannot be read or contains no blocks: one message, without the file name."""
 
 
 class FileBody(NamedTuple):
-    """What a file has under one name: surfaces of one or several solids, or the outline of one polygon.
+    """Body of a geometry file: surfaces of one or several solids, or the outline of one polygon.
 
     points   corners [units of the file], (n, 3), of an outline (n, 2)
     faces    of each face the numbers of its corners; none: an outline, the corners one after the other
@@ -38,7 +38,7 @@ class FileBody(NamedTuple):
 
 
 class Contents(NamedTuple):
-    """All bodies of a file in its order."""
+    """All bodies of a geometry file in its order."""
 
     bodies: Sequence[FileBody]
     unit: str = ""  # of lengths, where the file says it
@@ -48,7 +48,7 @@ class Contents(NamedTuple):
 
 
 def check_file(path: Path) -> None:
-    """Raises FileProblem for what is no file, or a file that is too large; OSError where it is not there."""
+    """Raise FileProblem for a path that is no file or a file that is too large; OSError where it does not exist."""
     if not path.is_file():
         path.stat()
         raise FileProblem(f"is {what_else(path)}; a drawing or mesh is a file")
@@ -58,7 +58,7 @@ def check_file(path: Path) -> None:
 
 
 def check_shapes(bodies: Sequence[FileBody]) -> None:
-    """Raises FileProblem: too many blocks, or corners of an outline or a face, or a name that cannot be shown."""
+    """Raise FileProblem for too many blocks, too many corners, or a name that cannot be shown."""
     if len(bodies) > MOST_BLOCKS:
         raise FileProblem(f"it holds {len(bodies):,} shapes; at most {MOST_BLOCKS:,} are read")
     faces = sum(len(body.faces) for body in bodies)
@@ -73,13 +73,13 @@ def check_shapes(bodies: Sequence[FileBody]) -> None:
 
 
 def check_corners(named: str, count: int) -> None:
-    """Raises FileProblem where an outline, a face or a solid has too many corners."""
+    """Raise FileProblem where an outline, a face or a solid has too many corners."""
     if count > MOST_CORNERS:
         raise FileProblem(f"{named} has {count:,} corners; outlines, faces and solids have at most {MOST_CORNERS:,}")
 
 
 def written_out(root: str, parts: Callable[[str], Iterable[tuple[str | None, int]]]) -> int:
-    """How many shapes a drawing has where what refers to a part of it is that part.
+    """Count the shapes of a drawing after its references to parts are expanded.
 
     parts: of a name, what it consists of: (None, n) are n shapes, (name, n) is another part n times. Raises
     FileProblem: a part holds itself, or there are too many.
@@ -109,7 +109,7 @@ def written_out(root: str, parts: Callable[[str], Iterable[tuple[str | None, int
 
 
 def unit_of(contents: Contents, given: str | None) -> str:
-    """The unit of lengths: given in the case, else what the file says, else m. Raises FileProblem: one of others."""
+    """Return the unit of length: given in the case, else stated by the file, else m. Raises FileProblem."""
     found = given or contents.unit or "m"
     if found not in UNITS:
         raise FileProblem(f"its lengths are in {found}, which are not read; give unit, one of {', '.join(UNITS)}")
@@ -117,7 +117,7 @@ def unit_of(contents: Contents, given: str | None) -> str:
 
 
 def finite(points: Sequence | np.ndarray, what: str) -> np.ndarray:
-    """Points as an array; raises FileProblem where one is not a number."""
+    """Convert points to an array; raises FileProblem where one is not finite."""
     found = np.asarray(points, float)
     bad = ~np.isfinite(found).all(axis=-1)
     if bad.any():

@@ -1,4 +1,4 @@
-"""DXF drawings, by ezdxf: closed polylines, and loops of single lines, as outlines; layers are kept."""
+"""Import DXF drawings (ezdxf): closed polylines, and loops of single lines, as outlines; layers are kept."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SAME = 1e-9  # of the size of a drawing: ends of lines that meet
 
 
 class _Piece(NamedTuple):
-    """A line that is not closed by itself."""
+    """Open line of a DXF drawing that may form an outline with others."""
 
     layer: str
     ring: np.ndarray  # corners along it, (n, 2)
@@ -27,7 +27,7 @@ class _Piece(NamedTuple):
 
 
 def read(path: Path, chords: int | None = None, only: Collection[str] = (), skip: Collection[str] = ()) -> Contents:
-    """The outlines of a drawing. Raises FileProblem. chords: straight pieces of a curve; None: curves are refused.
+    """Read the outlines of a DXF drawing. Raises FileProblem.
 
     only: layers that are read, others are left out; (): all. skip: layers that are left out.
     """
@@ -69,7 +69,7 @@ def _drawing(path: Path) -> Any:
 
 
 def _unit(code: int) -> str:
-    """What a drawing says of its lengths, also a unit that is not read."""
+    """Return the unit of length that a drawing declares, even one that is not supported."""
     from ezdxf.enums import InsertUnits
 
     if code in UNITS:
@@ -79,7 +79,7 @@ def _unit(code: int) -> str:
 
 
 def _entities(drawing: Any) -> Iterable[Any]:
-    """What the model space shows, block references taken apart."""
+    """Yield the entities of the model space with block references expanded."""
     from ezdxf import disassemble
 
     written_out(_MODEL_SPACE, lambda name: _parts(drawing, name))
@@ -87,7 +87,7 @@ def _entities(drawing: Any) -> Iterable[Any]:
 
 
 def _parts(drawing: Any, name: str) -> Iterable[tuple[str | None, int]]:
-    """What the model space, or a block of a drawing, consists of: shapes, and references to blocks."""
+    """Yield the shapes and block references of the model space or of a block of a drawing."""
     inside = drawing.modelspace() if name == _MODEL_SPACE else drawing.blocks.get(name)
     for entity in inside or ():
         if entity.dxftype() != "INSERT":
@@ -118,12 +118,12 @@ def _piece(entity: Any, chords: int | None) -> _Piece:
 
 
 def _closed(entity: Any, ring: np.ndarray) -> bool:
-    """Whether a polyline says that it is closed, or ends where it begins."""
+    """Test whether a polyline is closed by its flag, or ends where it begins."""
     return bool(entity.is_closed) or bool(np.abs(ring[0] - ring[-1]).max() <= _SAME * np.abs(ring).max())
 
 
 def _ring(path: Any, layer: str, chords: int | None) -> np.ndarray:
-    """Corners along a path, (n, 2)."""
+    """Return the corners along a path, (n, 2)."""
     from ezdxf.path import Command
 
     points, start = [path.start], path.start
@@ -150,7 +150,7 @@ def _curve(start: Any, command: Any, chords: int) -> list[Any]:
 
 
 def _loops(pieces: list[_Piece]) -> list[FileBody]:
-    """Outlines made of lines that meet end to end, in twos, on one layer. Raises FileProblem where they do not."""
+    """Join lines that meet end to end on one layer to outlines. Raises FileProblem where they do not close."""
     from ezdxf import edgeminer
     from ezdxf.math import Vec3
 
@@ -188,6 +188,6 @@ def _length(ring: np.ndarray) -> float:
 
 
 def _body(ring: np.ndarray, layer: str, said: str) -> FileBody:
-    """An outline, its last corner left out where it is the first one again."""
+    """Create an outline without a repeated last corner."""
     same = len(ring) > 1 and np.abs(ring[0] - ring[-1]).max() <= _SAME * np.abs(ring).max()
     return FileBody("", ring[:-1] if same else ring, layer=layer, said=said)

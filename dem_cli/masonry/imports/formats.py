@@ -1,4 +1,4 @@
-"""Formats of geometry files by the end of their names, and what they hold: solids in space, or outlines in a plane."""
+"""Import formats by the ending of the file name: solids in space, or outlines in a plane."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from dem_cli.masonry.imports.contents import Contents, FileProblem, check_file, 
 
 
 class FileFormat(NamedTuple):
-    """A format that is read."""
+    """Import format with its reader and description."""
 
     module: str  # its reader, imported when it is used
     flat: bool  # outlines in a plane, not solids
@@ -29,14 +29,14 @@ FORMATS = {
 
 
 def format_of(file: str | Path) -> FileFormat | None:
-    """The format that the end of a name says; None: one that is not read."""
+    """Return the import format of a file name; None: not supported."""
     return FORMATS.get(Path(file).suffix.lower())
 
 
 def read(
     file: str | Path, chords: int | None = None, only: Collection[str] = (), skip: Collection[str] = ()
 ) -> Contents:
-    """All bodies in a file, of a drawing those on the layers `only`; (): on any but `skip`. Raises FileProblem.
+    """Read all bodies of a file, of a drawing on the layers `only`; (): on all except `skip`. Raises FileProblem.
 
     chords: straight pieces of a curve in a drawing.
     """

@@ -1,4 +1,4 @@
-"""Wavefront OBJ files: objects (o) and groups (g) are blocks, usemtl names their material.
+"""Import Wavefront OBJ files: objects (o) and groups (g) are blocks, usemtl names their material.
 
 An object NAME whose faces all stand in groups NAME-part-1, NAME-part-2, ... is a compound, as dem writes them.
 Read here because meshio and trimesh lose names, or take what is broken without a word. Source: Wavefront, Object Files
@@ -20,7 +20,7 @@ CURVED = {"curv", "curv2", "surf", "cstype", "parm", "trim", "hole", "bmat"}
 
 
 class _NamedFaces:
-    """The faces that stand below one o or g line."""
+    """Faces of an OBJ file below one o or g line."""
 
     def __init__(self, name: str):
         self.name = name
@@ -30,12 +30,12 @@ class _NamedFaces:
 
     @property
     def compound(self) -> bool:
-        """Whether its groups are called as the parts of one block, as exports/meshes.py does."""
+        """Test whether the groups of an object are named as parts of one block, as exports/meshes.py names them."""
         return len(self.groups) > 1 and self.groups == {f"{self.name}-part-{k + 1}" for k in range(len(self.groups))}
 
 
 def read(path: Path) -> Contents:
-    """The objects of a file, or its groups where it has no objects. Raises FileProblem."""
+    """Read the objects of an OBJ file, or its groups where it has no objects. Raises FileProblem."""
     points: list[list[float]] = []
     objects = [_NamedFaces("")]
     groups = [_NamedFaces("")]
@@ -68,7 +68,7 @@ def read(path: Path) -> Contents:
 
 
 def _lines(path: Path) -> list[tuple[int, list[str]]]:
-    """Words of each line that has any, with its number; a backslash joins lines."""
+    """Split each line of a file into words with its line number; a backslash joins lines."""
     found: list[tuple[int, list[str]]] = []
     waiting: list[str] = []
     for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
@@ -93,7 +93,7 @@ def _point(words: list[str], number: int) -> list[float]:
 
 
 def _loop(words: list[str], n_points: int, number: int) -> list[int]:
-    """Numbers of the corners of a face from 0; the file counts from 1, or back from the last one."""
+    """Parse the corner numbers of a face, counted from 0; the file counts from 1, or back from the last one."""
     check_corners(f"line {number}: a face", len(words))
     found = []
     for word in words:
@@ -111,7 +111,7 @@ def _loop(words: list[str], n_points: int, number: int) -> list[int]:
 
 
 def _together(found: list[_NamedFaces]) -> list[_NamedFaces]:
-    """Faces of one name that stand in several places of the file, as one; those without faces are left out."""
+    """Merge faces of one name from several places of the file; names without faces are left out."""
     by_name: dict[str, _NamedFaces] = {}
     for each in found:
         if each.loops:

@@ -1,4 +1,4 @@
-"""PLY files (Stanford polygon format), by meshio: one body; solids in it are told apart by the corners they share."""
+"""Import PLY files (Stanford polygon format, meshio) as one body; its solids share no corners."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ HEADER = 1 << 16  # bytes
 
 
 def read(path: Path) -> Contents:
-    """The surface of a file. Raises FileProblem."""
+    """Read the surface of a PLY file. Raises FileProblem."""
     from meshio import ply
 
     if b"end_header" not in path.read_bytes()[:HEADER]:  # meshio would look for it without end
@@ -32,5 +32,5 @@ def read(path: Path) -> Contents:
     if any(len(loop) < 3 for loop in faces):
         raise FileProblem("a face with fewer than 3 corners")
     if faces and (max(map(np.max, faces)) >= len(points) or min(map(np.min, faces)) < 0):
-        raise FileProblem(f"a face names a corner that is none; there are {len(points)}")
+        raise FileProblem(f"a face names a corner that does not exist; there are {len(points)}")
     return Contents([FileBody("", points, tuple(faces))] if faces else [])

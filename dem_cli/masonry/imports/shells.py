@@ -1,4 +1,4 @@
-"""Shells: surfaces of a file as closed solids, told apart by the corners they share, with faces that look outwards.
+"""Split the surfaces of a file into closed solids by their shared corners, and orient faces outwards.
 
 Corners that are the same point are merged. Where an edge belongs to four faces or more, because solids touch, each face
 goes on in the next one around the edge on its inner side. Open surfaces are refused, with the edge.
@@ -28,7 +28,7 @@ class Shell(NamedTuple):
 
     @property
     def triangles(self) -> np.ndarray:
-        """Fans of all faces, (m, 3): of a concave face some run the other way, and sums over all of them are right."""
+        """Triangle fans of all faces, (m, 3): signed sums over them are right also for concave faces."""
         return np.array([(loop[0], a, b) for loop in self.faces for a, b in zip(loop[1:-1], loop[2:])])
 
     @property
@@ -39,7 +39,7 @@ class Shell(NamedTuple):
 
 
 def shells_of(body: FileBody) -> list[Shell]:
-    """The solids of a body. Raises FileProblem: a surface that is open, or of which nobody knows what is inside."""
+    """Split a body into closed solids. Raises FileProblem: an open surface, or one without a clear inside."""
     loops = [loop for loop in map(_tidy, body.faces) if len(loop) > 2]
     if body.indexed and loops:
         edges = _Edges(loops)
@@ -61,7 +61,7 @@ def shells_of(body: FileBody) -> list[Shell]:
 
 
 class _Edges:
-    """Edges of faces: of each side of a face its ends, its face, and which edge it is."""
+    """Edges of a surface: for each side of a face its ends, its face, and its edge."""
 
     def __init__(self, loops: list[np.ndarray]):
         start, end = np.concatenate(loops), np.concatenate([np.roll(loop, -1) for loop in loops])
@@ -76,11 +76,11 @@ class _Edges:
         self.starts = np.concatenate([[0], np.cumsum(self.counts)])
 
     def sides(self, edge: int) -> np.ndarray:
-        """The sides of faces that run along an edge."""
+        """Return the sides of faces that run along an edge."""
         return self.order[self.starts[edge] : self.starts[edge + 1]]
 
     def pairs(self) -> np.ndarray:
-        """Faces on both sides of each edge that has two, and whether both run the same way, (n, 3)."""
+        """Return the two faces of each edge shared by two, and whether both run the same way, (n, 3)."""
         two = self.starts[:-1][self.counts == 2]
         first, second = self.order[two], self.order[two + 1]
         same = (self.ends[first] == self.ends[second]).all(axis=1)
@@ -88,12 +88,12 @@ class _Edges:
 
 
 def _tidy(loop: np.ndarray) -> np.ndarray:
-    """A face without corners that follow themselves."""
+    """Remove repeated consecutive corners from a face."""
     return loop[loop != np.roll(loop, 1)] if len(loop) else loop
 
 
 def _merged(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points that are apart, and which of them each point is."""
+    """Merge coinciding points; returns the distinct ones and the index of each point among them."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
@@ -116,7 +116,7 @@ def _open_words(points: np.ndarray, edges: _Edges, odd: np.ndarray) -> str:
 
 
 def _refuse_twice(points: np.ndarray, loops: list[np.ndarray]) -> None:
-    """Raises FileProblem where the same face is there twice, the same way round."""
+    """Raise FileProblem where the same face occurs twice with the same orientation."""
     seen: dict[tuple[int, ...], int] = {}
     for number, loop in enumerate(loops):
         first = int(loop.argmin())
@@ -128,7 +128,7 @@ def _refuse_twice(points: np.ndarray, loops: list[np.ndarray]) -> None:
 
 
 def _around(points: np.ndarray, loops: list[np.ndarray], edges: _Edges, edge: int) -> np.ndarray:
-    """Pairs of faces that are sides of one solid, of four or more faces that meet in an edge, (n, 3)."""
+    """Pair the faces of one solid around an edge at which four or more faces meet, (n, 3)."""
     start, end = edges.keys[edge]
     along = points[end] - points[start]
     along = along / norm(along)
@@ -158,7 +158,7 @@ def _around(points: np.ndarray, loops: list[np.ndarray], edges: _Edges, edge: in
 
 
 def _solids(points: np.ndarray, loops: list[np.ndarray], pairs: np.ndarray) -> list[Shell]:
-    """Shells of the faces that hang together, in the order of their first faces."""
+    """Group connected faces to shells, in the order of their first faces."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -172,7 +172,7 @@ def _solids(points: np.ndarray, loops: list[np.ndarray], pairs: np.ndarray) -> l
 
 
 def _turned(n: int, pairs: np.ndarray, group: np.ndarray, mended: np.ndarray) -> np.ndarray:
-    """Faces to turn round so that neighbours run opposite ways, (n,) bool. Raises FileProblem: there is no way."""
+    """Find the faces to flip so that neighbours run opposite ways, (n,) bool. Raises FileProblem if impossible."""
     near: list[list[tuple[int, int]]] = [[] for _ in range(n)]
     for a, b, same in pairs[np.isin(group[pairs[:, 0]], mended)].tolist():
         near[a].append((b, same))
@@ -189,7 +189,7 @@ def _turned(n: int, pairs: np.ndarray, group: np.ndarray, mended: np.ndarray) ->
 
 
 def _walk(waiting: list[int], near: list[list[tuple[int, int]]], found: np.ndarray) -> Iterator[tuple[int, int]]:
-    """Each neighbour of a face and the state it must have; those that have none get it."""
+    """Walk over neighbouring faces and propagate their orientation; yields each neighbour and its required state."""
     while waiting:
         face = waiting.pop()
         for other, same in near[face]:

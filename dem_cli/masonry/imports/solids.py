@@ -1,4 +1,4 @@
-"""Solids of a file as convex parts: closed, in metres and upright, neighbours on common planes, no part concave."""
+"""Convert solids of a file to convex parts: closed, in metres and upright, with neighbours on common planes."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ SINGLE = 2.0**-22  # of the largest coordinate: twice what single precision roun
 
 
 class Reading(Protocol):
-    """How a file is read."""
+    """Options of reading a geometry file."""
 
     @property
     def up(self) -> str:
-        """Its vertical axis, "z" or "y"."""
+        """Vertical axis of the file, "z" or "y"."""
 
     @property
     def concave(self) -> str:
-        """What becomes of what is concave: "refuse" or "decompose"."""
+        """Treatment of concave solids: "refuse" or "decompose"."""
 
     @property
     def snap(self) -> float | None:
-        """How far apart what is one may lie [m]; None: as files round."""
+        """Largest distance of points that are merged [m]; None: the rounding of the file."""
 
 
 class Solid(NamedTuple):
-    """One solid of a file: convex parts in metres."""
+    """Solid of a file as convex parts in metres."""
 
     name: str
     layer: str
@@ -51,7 +51,7 @@ class Solid(NamedTuple):
 
 
 def solids_of(bodies: Sequence[FileBody], factor: float, how: Reading) -> tuple[list[Solid], list[str]]:
-    """All solids in the order of the file, and notes on what was moved. Raises FileProblem, with the solid named."""
+    """Convert all bodies to solids, in the order of the file, with notes on moved corners. Raises FileProblem."""
     _check_copies(bodies)
     owners: list[int] = []
     shapes: list[Any] = []
@@ -85,7 +85,7 @@ def solids_of(bodies: Sequence[FileBody], factor: float, how: Reading) -> tuple[
 
 
 def rounding(bodies: Sequence[FileBody], factor: float) -> float:
-    """What a file may have rounded off [m]: 1e-6 of the size of all, and the last digits of single precision."""
+    """Estimate the rounding error of a file [m]: 1e-6 of the whole size, and the last digits of single precision."""
     places = np.concatenate([body.points for body in bodies])
     size = float(norm(np.ptp(places, axis=0)))
     single = bool((places == places.astype(np.float32)).all())
@@ -93,7 +93,7 @@ def rounding(bodies: Sequence[FileBody], factor: float) -> float:
 
 
 def called(body: FileBody, number: int) -> str:
-    """What a body is called in a message."""
+    """Name a body in a message, by its name or its place."""
     layer = f" on layer '{body.layer}'" if body.layer and not body.faces else ""
     if body.name:
         return f"'{body.name}'{layer}"
@@ -103,7 +103,7 @@ def called(body: FileBody, number: int) -> str:
 
 
 def _check_copies(bodies: Sequence[FileBody]) -> None:
-    """Raises FileProblem where the same corners are there under a hundred names."""
+    """Raise FileProblem where a hundred bodies have the same corners."""
     copies = Counter(body.points.tobytes() for body in bodies)
     corners, count = copies.most_common(1)[0]
     if count > MOST_TOGETHER:
@@ -113,7 +113,7 @@ def _check_copies(bodies: Sequence[FileBody]) -> None:
 
 
 def _placed(points: np.ndarray, factor: float, up: str) -> np.ndarray:
-    """In metres, z upwards; a factor of 1 changes no bit."""
+    """Scale points to metres and turn z upwards; a factor of 1 changes no bit."""
     found = points * factor if factor != 1.0 else points
     if up == "y" and points.shape[1] == 3:
         found = np.column_stack([found[:, 0], -found[:, 2], found[:, 1]])
@@ -121,7 +121,7 @@ def _placed(points: np.ndarray, factor: float, up: str) -> np.ndarray:
 
 
 def closed_outline(ring: np.ndarray) -> np.ndarray:
-    """An outline counter-clockwise, each corner once. Raises FileProblem."""
+    """Return a closed outline counter-clockwise, each corner once. Raises FileProblem."""
     found = polygon.simplified(ring)
     least = polygon.ROUND_OFF * polygon.size(ring)
     if len(found) < 3 or singular(found - found.mean(axis=0))[1][1] <= least:
@@ -140,7 +140,7 @@ def _facets(shape: Any, tolerance: float) -> Facets:
 
 
 def _again(facets: Facets, points: np.ndarray) -> Facets:
-    """The same sides through corners that moved."""
+    """Rebuild the facets of a solid after its corners moved."""
     if points is facets.points or (points == facets.points).all():
         return facets
     if points.shape[1] == 2:
@@ -150,7 +150,7 @@ def _again(facets: Facets, points: np.ndarray) -> Facets:
 
 
 def _near(facets: Sequence[Facets], reach: float) -> np.ndarray:
-    """Pairs of solids whose boxes come near each other, (n, 2)."""
+    """Find pairs of solids whose boxes come near each other, (n, 2)."""
     from dem_cli.core.contact.near_boxes import near_boxes
 
     corners = np.concatenate([each.points for each in facets])
@@ -176,7 +176,7 @@ def _notes(snapped: Snapped, tolerance: float) -> list[str]:
 
 
 def _parts(facets: Facets, decompose: bool, tolerance: float) -> tuple[Any, ...]:
-    """Convex parts of one solid. Raises ValueError where it is concave and that is not wanted."""
+    """Split a solid into convex parts. Raises ValueError where it is concave and may not be split."""
     over = facets.over()
     gap = max(tolerance, polyhedron.COPLANAR * polyhedron.size(facets.points))
     if over.max() <= gap:

@@ -1,4 +1,4 @@
-"""STL files, ASCII or binary: each solid of an ASCII file is a body; triangles have no numbers of corners.
+"""Import STL files, ASCII or binary: each solid of an ASCII file is a body of separate triangles.
 
 Read here because meshio loses the names of solids and trimesh takes a truncated file without a word. Source: 3D
 Systems, Stereolithography Interface Specification, 1988; a file that says "solid" may still be binary: its size tells.
@@ -17,7 +17,7 @@ _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribut
 
 
 def read(path: Path) -> Contents:
-    """The solids of a file. Raises FileProblem."""
+    """Read the solids of an STL file. Raises FileProblem."""
     raw = path.read_bytes()
     count = int.from_bytes(raw[80:HEADER], "little") if len(raw) >= HEADER else 0
     if len(raw) >= HEADER and len(raw) == HEADER + PER_TRIANGLE * count:
@@ -35,7 +35,7 @@ def _binary(raw: bytes, count: int) -> np.ndarray:
 
 
 def _ascii(text: str) -> list[FileBody]:
-    """Bodies of the solids of an ASCII file, those without triangles left out."""
+    """Parse the solids of an ASCII STL file, those without triangles left out."""
     found: list[FileBody] = []
     name, inside, number = "", False, 0
     corners: list[list[float]] = []

@@ -1,4 +1,4 @@
-"""SVG drawings, by svgelements: rectangles, polygons and closed paths as outlines, groups (layers) kept.
+"""Import SVG drawings (svgelements): rectangles, polygons and closed paths as outlines; groups are layers.
 
 One unit of the drawing is one unit of length: numbers as they stand in the file, transformations applied, size and
 viewBox of the page left out. y runs downwards in SVG; outlines run upwards.
@@ -24,7 +24,7 @@ _PAGE = ("width", "height", "viewBox", "x", "y", "preserveAspectRatio")
 
 
 def read(path: Path, chords: int | None = None, only: Collection[str] = (), skip: Collection[str] = ()) -> Contents:
-    """The outlines of a drawing. Raises FileProblem. chords: straight pieces of a curve; None: curves are refused.
+    """Read the outlines of an SVG drawing. Raises FileProblem.
 
     only: groups (layers) that are read, others are left out; (): all. skip: groups that are left out.
     """
@@ -63,7 +63,7 @@ def _parsed(path: Path, left_out: Counter[str]) -> Any:
 
 
 def _check_uses(root: Any) -> None:
-    """Raises FileProblem where what <use> repeats has no end, or is too much."""
+    """Raise FileProblem where the repetition of <use> has no end, or is too much."""
     named = {f"#{element.get('id')}": element for element in root.iter() if element.get("id")}
 
     def parts(name: str) -> Iterator[tuple[str | None, int]]:
@@ -75,13 +75,13 @@ def _check_uses(root: Any) -> None:
 
 
 def _is_hidden(element: Any) -> bool:
-    """Whether a group or shape, such as a layer that is off, is not displayed: svgelements leaves it out."""
+    """Test whether a group or shape is not displayed, such as a layer that is off."""
     style = element.get("style", "").replace(" ", "")
     return element.get("display") == "none" or "display:none" in style.split(";")
 
 
 def _shapes(group: Any, layer: str, left_out: Counter[str]) -> Iterator[tuple[str, str, Any]]:
-    """Name, group and shape of everything that is drawn; the outermost group with a name counts."""
+    """Yield name, group and shape of everything that is drawn; the outermost group with a name counts."""
     from svgelements import Group, Path, Shape, Use
 
     for each in group:
@@ -95,7 +95,7 @@ def _shapes(group: Any, layer: str, left_out: Counter[str]) -> Iterator[tuple[st
 
 
 def _rings(shape: Any, name: str, chords: int | None) -> Iterator[np.ndarray]:
-    """Corners of each closed piece of a path. Raises FileProblem where it is open or curved."""
+    """Yield the corners of each closed piece of a path. Raises FileProblem where it is open or curved."""
     from svgelements import Close, Line, Move, Path
 
     for piece in shape.as_subpaths():

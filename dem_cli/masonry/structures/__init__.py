@@ -1,1 +1,1 @@
-"""Generators of structures: walls, columns, arches."""
+"""Generate structures: walls, columns, arches, vaults, bridges and buildings."""

@@ -1,4 +1,4 @@
-"""Arches of voussoirs: circular, segmental, pointed, flat; on springings, columns or buttresses."""
+"""Generate arches of voussoirs: circular, segmental, pointed, flat; on springings, columns or buttresses."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from dem_cli.masonry.structures.bases import base_block
 
 
 class Pier(CaseModel):
-    """A pier of equal blocks, flush with the inner face of the ring, its top cut to the springing joint."""
+    """Pier of equal blocks, flush with the inner face of the ring, its top cut to the springing joint."""
 
     width: Positive = Field(description="width [m]; at least that of the springing joint", examples=[0.8])
     height: Positive = Field(
@@ -35,7 +35,7 @@ SHAPE_KEYS = {
 
 
 class Arch(StructureBase):
-    """Voussoirs over a span. Local origin: mid-span, on the ground below the piers; without piers at the
+    """Arch of voussoirs over a span. Local origin: mid-span, on the ground below the piers; without piers at the
     level of the springings (where the inner face starts). In 3D half of the thickness lies to either side of it.
 
     Block names: "<id>-<number>" for voussoirs from left to right, from 1; "<id>-left-<number>" and
@@ -94,12 +94,12 @@ class Arch(StructureBase):
 
     @property
     def piers(self) -> Pier | None:
-        """What the arch stands on; None for fixed springings."""
+        """Piers that carry the arch; None for fixed springings."""
         return self.columns or self.buttresses
 
     @property
     def on_ground(self) -> bool:
-        """Whether a [ground] takes the place of its base: of its piers; springings without any stay fixed."""
+        """Tell whether a [ground] block replaces the base of the piers; springings without piers stay fixed."""
         return self.piers is not None
 
     @model_validator(mode="after")
@@ -130,7 +130,7 @@ def _check_piers(arch: Arch, piers: Pier) -> None:
 
 
 def _exactly_one(arch: Arch, *keys: str) -> tuple[str, float]:
-    """The one of these keys that is given, and its value."""
+    """Return the only given one of these keys, and its value."""
     given = [(key, value) for key in keys if (value := getattr(arch, key)) is not None]
     if len(given) != 1:
         found = "found none" if not given else "found both"
@@ -139,7 +139,7 @@ def _exactly_one(arch: Arch, *keys: str) -> tuple[str, float]:
 
 
 def _required(arch: Arch, *keys: str) -> list[float]:
-    """The values of these keys."""
+    """Return the values of required keys. Raises KeyProblem for a missing one."""
     for key in keys:
         if getattr(arch, key) is None:
             raise KeyProblem(f"missing: a {arch.shape} arch needs {' and '.join(keys)}", key)
@@ -147,7 +147,7 @@ def _required(arch: Arch, *keys: str) -> list[float]:
 
 
 def _arc(inner_radius: float, ring: float, half_angle: float, voussoirs: int) -> np.ndarray:
-    """Joints [inner, outer] of a symmetric arc from left to right, inner feet at y = 0, (n + 1, 2, 2)."""
+    """Compute the joints [inner, outer] of a symmetric arc from left to right, inner feet at y = 0, (n + 1, 2, 2)."""
     angles = half_angle * (1.0 - 2.0 * np.arange(voussoirs + 1) / voussoirs)
     directions = np.stack([-np.sin(angles), np.cos(angles)], axis=1)
     joints = directions[:, None, :] * np.array([inner_radius, inner_radius + ring])[None, :, None]
@@ -215,7 +215,7 @@ SHAPE_JOINTS: dict[str, Callable[[Arch], np.ndarray]] = {
 
 
 def build(arch: Arch) -> list[Block]:
-    """Blocks in local coordinates: fixed ones, piers left and right from below, voussoirs left to right."""
+    """Generate the blocks of an arch in local coordinates: fixed ones, piers from below, voussoirs left to right."""
     joints = SHAPE_JOINTS[arch.shape](arch)
     if arch.piers:
         joints[:, :, 1] += arch.piers.height
@@ -229,7 +229,7 @@ def build(arch: Arch) -> list[Block]:
 
 
 def _bases(arch: Arch, joints: np.ndarray) -> list[Block]:
-    """The two fixed blocks: below a pier as wide as it, or behind a springing joint, square to it."""
+    """Generate the two fixed blocks: below a pier as wide as it, or behind a springing joint, square to it."""
     if not arch.base:
         return []
     blocks = []
@@ -249,7 +249,7 @@ def _bases(arch: Arch, joints: np.ndarray) -> list[Block]:
 
 
 def _pier_blocks(arch: Arch, pier: Pier, joints: np.ndarray) -> list[Block]:
-    """Rectangles from below; the uppermost one ends in the springing joint and level with its outer edge."""
+    """Generate the rectangular blocks of a pier from below; the uppermost one is cut to the springing joint."""
     blocks = []
     levels = pier.height * np.arange(pier.courses + 1) / pier.courses
     for side, (inner, outer) in (("left", joints[0]), ("right", joints[-1])):

@@ -1,4 +1,4 @@
-"""Bond of walls in a case file: running, stack, English, Flemish, any offset; leaves and the stones through them."""
+"""Masonry bond of walls in a case file: running, stack, English, Flemish, any offset; leaves and bonders."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class BondKeys(CaseModel):
     )
 
     def check_bond(self, length: float) -> None:
-        """Raises KeyProblem where keys of the bond contradict each other; length: of the shortest block [m]."""
+        """Raise KeyProblem where keys of the bond contradict each other; length: of the shortest block [m]."""
         if self.offset is not None:
             if self.bond is not None:
                 raise KeyProblem("bond and offset say the same; give one of them", "offset")

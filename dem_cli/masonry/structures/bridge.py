@@ -1,4 +1,4 @@
-"""Arch bridges and arcades: spans with shared piers, abutments, spandrel walls in courses around the arches, fill."""
+"""Generate arch bridges and arcades: spans with shared piers, abutments, spandrel walls in courses, fill."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Support(CaseModel):
 
 
 class Spandrels(CaseModel):
-    """Masonry from the piers up to a level deck, in running bond, its courses cut around the arches."""
+    """Spandrel walls from the piers up to a level deck, in running bond, its courses cut around the arches."""
 
     block: tuple[Positive, Positive] = Field(description="length and height of a full block [m]", examples=[[0.8, 0.3]])
     cover: NonNegative = Field(0.0, description="from the crown of the highest arch to the deck [m]", examples=[0.3])
@@ -48,8 +48,8 @@ class BridgeFill(CaseModel):
 
 
 class Bridge(StructureBase):
-    """Arches over several spans. Local origin: left end of the first span, on the ground; in 3D in the middle of its
-    width.
+    """Arch bridge or arcade over several spans. Local origin: left end of the first span, on the ground; in 3D in the
+    middle of its width.
 
     Block names: "<id>-arch-<span>-<number>" for voussoirs from left to right, in several rows
     "<id>-arch-<span>-<number>-<row>"; "<id>-pier-<pier>-<course>", "<id>-left-<course>", "<id>-right-<course>" for
@@ -88,7 +88,7 @@ class Bridge(StructureBase):
 
     @property
     def on_ground(self) -> bool:
-        """Whether a [ground] takes the place of its base: where it has no abutments its end springings stay fixed."""
+        """Tell whether a [ground] block replaces the bases; without abutments the end springings stay fixed."""
         return self.abutments is not None
 
     @property
@@ -123,7 +123,7 @@ class Bridge(StructureBase):
 
 
 def _check_supports(bridge: Bridge) -> None:
-    """Raises KeyProblem where piers, abutments and the height do not go together."""
+    """Raise KeyProblem where piers, abutments and the height contradict each other."""
     several = len(bridge.all_spans) > 1
     if several != (bridge.piers is not None):
         message = "missing: there are several spans" if several else "not used with one span"
@@ -135,7 +135,7 @@ def _check_supports(bridge: Bridge) -> None:
 
 
 class Elevation(NamedTuple):
-    """Where the parts of a bridge are, x from its left end, y from its springings or the ground, whichever is lower."""
+    """Elevation of a bridge, x from its left end, y from its springings or the ground, whichever is lower."""
 
     openings: tuple[Opening, ...]  # the arches
     faces: np.ndarray  # of piers and abutments: left and right face [m], (spans + 1, 2)
@@ -144,7 +144,7 @@ class Elevation(NamedTuple):
 
 
 def _elevation(bridge: Bridge) -> Elevation:
-    """Raises KeyProblem: voussoirs that are not convex, supports narrower than the springings."""
+    """Compute the elevation. Raises KeyProblem: voussoirs not convex, supports narrower than the springings."""
     spans, lift = bridge.all_spans, bridge.height or 1.0
     pier, end = bridge.piers.width if bridge.piers else 0.0, _end_width(bridge)
     widths = [end, *[pier] * (len(spans) - 1), end]
@@ -173,12 +173,12 @@ def _elevation(bridge: Bridge) -> Elevation:
 
 
 def _end_width(bridge: Bridge) -> float:
-    """Width of an abutment; fixed springings reach as far as the ring is deep, and as deep again [m]."""
+    """Return the width of an abutment; fixed springings are twice as wide as the ring is deep [m]."""
     return bridge.abutments.width if bridge.abutments else 2.0 * bridge.ring
 
 
 def _toes(elevation: Elevation) -> list[np.ndarray]:
-    """Outlines of the tops of piers and abutments, above the springing level: [right springing, ..., left one], (6, 2).
+    """Return the outlines of the tops of piers and abutments above the springing level, (6, 2) each.
 
     From the right face at the springing, along the joint to the top, over to the other one and down to the left face.
     """
@@ -198,13 +198,15 @@ def _toes(elevation: Elevation) -> list[np.ndarray]:
 
 
 def _reach(joint: np.ndarray, level: float) -> float:
-    """How far a springing joint lies over its support, up to a level; a level joint with all of its length [m]."""
+    """Return how far a springing joint extends over its support, up to a level; a level joint with all its length
+    [m].
+    """
     (x0, y0), (x1, y1) = joint.tolist()
     return abs((x1 if y1 <= y0 else _at_level(joint, level)[0]) - x0)
 
 
 def _at_level(joint: np.ndarray, level: float) -> list[float]:
-    """Point of a springing joint at a level; its outer end as it is."""
+    """Return the point of a springing joint at a level; its outer end as it is."""
     (x0, y0), (x1, y1) = joint.tolist()
     if y1 - y0 <= 0.0 or level >= y1:
         return [x1, y1] if y1 > y0 else [x0, y0]
@@ -212,7 +214,7 @@ def _at_level(joint: np.ndarray, level: float) -> list[float]:
 
 
 def build(bridge: Bridge) -> list[Block]:
-    """Blocks in local places: fixed ones, piers and abutments from below, arches, spandrels."""
+    """Generate the blocks of a bridge: fixed ones, piers and abutments from below, arches, spandrels."""
     elevation = _elevation(bridge)
     shift = np.array([-float(elevation.faces[0, 1]), bridge.height - elevation.springing])
     blocks = [*_supports(bridge, elevation), *_laid(bridge, elevation)]
@@ -220,7 +222,7 @@ def build(bridge: Bridge) -> list[Block]:
 
 
 def _supports(bridge: Bridge, elevation: Elevation) -> Iterator[Block]:
-    """Fixed blocks, then piers and abutments from below."""
+    """Yield fixed blocks, then piers and abutments from below."""
     names = ["left", *(f"{k}" for k in range(1, len(elevation.faces) - 1)), "right"]
     stacks: list[Block] = []
     for name, top, (left, right) in zip(names, _toes(elevation), elevation.faces.tolist(), strict=True):
@@ -239,7 +241,7 @@ def _supports(bridge: Bridge, elevation: Elevation) -> Iterator[Block]:
 
 
 def _stack(name: str, table: Support, top: np.ndarray, springing: float, width: float) -> Iterator[Block]:
-    """Blocks of a pier from below; the uppermost one is cut to the springings."""
+    """Yield the blocks of a pier from below; the uppermost one is cut to the springings."""
     (left, _), (right, _) = top[0], top[1]
     levels = springing * np.arange(table.courses + 1) / table.courses
     for k, (low, high) in enumerate(zip(levels[:-1].tolist(), levels[1:].tolist(), strict=True), 1):
@@ -250,12 +252,12 @@ def _stack(name: str, table: Support, top: np.ndarray, springing: float, width: 
 
 
 def _merged(corners: Sequence) -> np.ndarray:
-    """A polygon without corners that are given twice or lie on an edge."""
+    """Simplify a polygon: no repeated corners and none on an edge."""
     return polygon.simplified(np.array(list(dict.fromkeys(tuple(map(float, corner)) for corner in corners))))
 
 
 def _laid(bridge: Bridge, elevation: Elevation) -> Iterator[Block]:
-    """Voussoirs, and spandrels around them, drawn together so that their corners are the same."""
+    """Yield voussoirs and spandrels around them, drawn together so that their corners coincide."""
     table, length = bridge.spandrels, float(elevation.faces[-1, 1])
     block, levels, spans = (length, 1.0), elevation.top + np.arange(2.0), list[tuple[tuple[float, float]]]()
     if table:
@@ -276,7 +278,7 @@ def _laid(bridge: Bridge, elevation: Elevation) -> Iterator[Block]:
 
 
 def _voussoir(bridge: Bridge, block: Block) -> list[Block]:
-    """In 3D rows of stones across the bridge, staggered from voussoir to voussoir."""
+    """Split a voussoir in 3D into a row of stones across the bridge, staggered from voussoir to voussoir."""
     if bridge.rows == 1:
         return [block]
     stone = bridge.width / bridge.rows
@@ -285,7 +287,7 @@ def _voussoir(bridge: Bridge, block: Block) -> list[Block]:
 
 
 def _spandrel(bridge: Bridge, block: Block) -> Iterator[Block]:
-    """A stone of the spandrels: as wide as the bridge, or one in each wall, with fill between."""
+    """Split a spandrel stone: as wide as the bridge, or one in each wall, with fill between."""
     table = bridge.spandrels
     assert table is not None
     lift = bridge.piers.courses if bridge.piers else (bridge.abutments.courses if bridge.abutments else 0)

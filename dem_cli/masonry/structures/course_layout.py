@@ -1,4 +1,4 @@
-"""Layout of courses around openings: where each course stops at jambs and arches, which head joints meet corners."""
+"""Lay out courses around openings: where each course stops at jambs and arches, which head joints meet corners."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FEATHER = 0.25  # of a course: thinner tips over or under an opening belong to t
 
 
 class CoursePlan(NamedTuple):
-    """One course and what stands in its way."""
+    """Course to be laid, with the openings and quoins in its way."""
 
     low: float  # lower bed joint [m]
     high: float  # upper bed joint [m]
@@ -28,7 +28,7 @@ class CoursePlan(NamedTuple):
 
 
 class Interruption(NamedTuple):
-    """What an opening takes of a course, between two stones."""
+    """Interruption of a course by an opening, between two stones."""
 
     ends: Span  # of the stones beside it; they are cut where it is narrower [m]
     middle: Span  # half way up, from where blocks are counted [m]
@@ -36,7 +36,7 @@ class Interruption(NamedTuple):
 
 
 def interruption(void: Void, low: float, high: float, gap: float) -> Interruption | None:
-    """Where a course stops beside an opening; None: it goes on over or under it."""
+    """Find where a course stops beside an opening; None: it continues over or under it."""
     foot, head = void.span_at(low, 1, gap), void.span_at(high, -1, gap)
     height = high - low
     middle = void.span_at((low + high) / 2.0, 1, gap)
@@ -59,7 +59,7 @@ def interruption(void: Void, low: float, high: float, gap: float) -> Interruptio
 
 
 def _thin(void: Void, low: float, high: float, over: bool, gap: float) -> Span | None:
-    """Where so little of a course is left over an opening, or under it, that it belongs to the next course."""
+    """Find where so little of a course remains over or under an opening that it belongs to the next course."""
     level = high - FEATHER * (high - low) if over else low + FEATHER * (high - low)
     across = void.span_at(level, 1 if over else -1, gap)
     if across is None:
@@ -70,19 +70,19 @@ def _thin(void: Void, low: float, high: float, over: bool, gap: float) -> Span |
 
 
 def near(x: float, stops: Sequence[float], reach: float) -> float:
-    """The nearest stop within reach, else where it is [m]."""
+    """Return the nearest stop within reach, otherwise the place itself [m]."""
     stop = min(stops, key=lambda other: abs(other - x), default=x)
     return stop if abs(stop - x) <= reach else x
 
 
 def _end(void: Void, foot: float, head: float, height: float) -> tuple[float, bool]:
-    """How far an opening leaves room to the outside, and whether the stone there would have a feather edge."""
+    """Return the end of a stone beside an opening, and whether it would have a feather edge."""
     slopes = foot - head if not void.full else abs(foot - head)
     return min(foot, head), bool(len(void.joints)) and slopes > 2.0 * FEATHER * height
 
 
 def laid_around(plan: CoursePlan, interruptions: Sequence[Interruption], gap: float) -> list[list[Piece]]:
-    """Runs of blocks of a course, from left to right, each between two ends of it."""
+    """Divide a course into runs of blocks between openings, from left to right."""
     counted = {one.ends[i]: one.middle[i] for one in interruptions for i in (0, 1)}
     runs = []
     for span in plan.spans:
@@ -98,7 +98,7 @@ def laid_around(plan: CoursePlan, interruptions: Sequence[Interruption], gap: fl
 
 
 def _snapped(run: list[Piece], plan: CoursePlan) -> list[Piece]:
-    """With head joints at the corners of openings that they are close to."""
+    """Move head joints to nearby corners of openings."""
     found = list(run)
     for i in range(len(found) - 1):
         joint = found[i].end
@@ -111,7 +111,7 @@ def _snapped(run: list[Piece], plan: CoursePlan) -> list[Piece]:
 
 
 def split(tip: Span, joints: Sequence[float], stops: Sequence[float], least: float) -> list[Span]:
-    """A thin leftover, divided at the head joints of the course that it belongs to; no piece shorter than `least`."""
+    """Divide a thin leftover at the head joints of its neighbouring course; no piece shorter than `least`."""
     places = {near(x, stops, 0.5 * least) for x in joints}
     ends = [tip[0]]
     for x in sorted(places):

@@ -1,4 +1,4 @@
-"""Courses of masonry: bonds (stack, running, English, Flemish), leaves, through-stones; where the head joints are."""
+"""Courses of masonry: bonds (stack, running, English, Flemish), leaves, through-stones and head joints."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ Span = tuple[float, float]  # from where to where masonry is laid [m]
 
 
 def bed_joints(courses: int, height: float, heights: Sequence[float] = ()) -> np.ndarray:
-    """Heights of the bed joints from the foot to the top [m], (courses + 1,): of equal courses, or of given ones."""
+    """Return the heights of the bed joints from the foot to the top [m], (courses + 1,): equal or given courses."""
     return np.concatenate([[0.0], np.cumsum(heights)]) if heights else np.arange(courses + 1) * height
 
 
 class Piece(NamedTuple):
-    """One block of a course, seen from the front."""
+    """Block of a course, seen from the front."""
 
     start: float
     end: float
@@ -26,7 +26,7 @@ class Piece(NamedTuple):
 
 
 class Unit(NamedTuple):
-    """One of the blocks that a bond repeats."""
+    """Repeated block of a bond."""
 
     length: float  # of a full block's
     header: bool
@@ -36,7 +36,7 @@ STRETCHER, HEADER = Unit(1.0, False), Unit(0.5, True)
 
 
 class Pattern(NamedTuple):
-    """Pattern of a bond in a course: units over and over, the first one beginning `start` full blocks from the end."""
+    """Bond pattern of a course: repeated units, the first one beginning `start` full blocks from the end."""
 
     units: tuple[Unit, ...]
     start: float
@@ -70,12 +70,12 @@ HEADER_BONDS = ("english", "english-garden", "flemish")
 
 
 def pattern_of(bond: str, offset: float | None, course: int, length: float) -> Pattern:
-    """What a bond lays in a course, from 0; offset: shift of every other course [m], None: half a block of `length`."""
+    """Return the bond pattern of a course, from 0; offset: shift of every other course [m], None: half of `length`."""
     return BONDS[bond](course, 0.5 if offset is None else offset / length)
 
 
 def laid(pattern: Pattern, span: Span, length: float, anchor: float, below: Sequence[float]) -> list[Piece]:
-    """Blocks of a course from left to right, none shorter than a quarter of a block where the span is not.
+    """Divide a course into blocks from left to right, none shorter than a quarter of a block if the span is longer.
 
     length     of a full block [m]
     anchor     where the pattern of the bond begins [m]
@@ -90,7 +90,7 @@ def laid(pattern: Pattern, span: Span, length: float, anchor: float, below: Sequ
 
 
 def _as_repeated(pattern: Pattern, span: Span, length: float, anchor: float) -> list[Piece]:
-    """Units over and over, cut off at the ends of the span."""
+    """Repeat the units of a pattern, cut off at the ends of the span."""
     low, high = span
     lengths = np.array([unit.length for unit in pattern.units]) * length
     period, steps = float(lengths.sum()), np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
@@ -113,7 +113,7 @@ def _mirrored(pieces: Sequence[Piece]) -> list[Piece]:
 
 
 def _closers(pieces: list[Piece], length: float, below: Sequence[float]) -> list[Piece]:
-    """With a quarter block at the left end: after the header beside it, as queen closers are, not at the very end."""
+    """Move a quarter block from the left end to behind the adjacent header, as queen closers are placed."""
     if len(pieces) < 3:
         return pieces
     quarter, header = pieces[0], pieces[1]
@@ -128,7 +128,7 @@ def _closers(pieces: list[Piece], length: float, below: Sequence[float]) -> list
 
 
 def _closed(pieces: list[Piece], length: float, below: Sequence[float]) -> list[Piece]:
-    """Without a piece at the left end that is shorter than a quarter of a block: the next one is cut, or joined to it.
+    """Remove a piece shorter than a quarter block at the left end: the next one is cut, or joined to it.
 
     The joint between both goes where it is furthest from those below.
     """
@@ -152,7 +152,7 @@ def _clearance(x: float, others: Sequence[float]) -> float:
 
 
 def without(span: Span, gaps: Sequence[Span], small: float) -> list[Span]:
-    """What is left of a span beside gaps in it, from left to right; nothing narrower than `small` [m]."""
+    """Subtract gaps from a span, from left to right; pieces narrower than `small` [m] are dropped."""
     found, low = [], span[0]
     for start, end in sorted(gaps):
         if start - low > small:
@@ -166,7 +166,7 @@ def without(span: Span, gaps: Sequence[Span], small: float) -> list[Span]:
 
 
 def are_through(share: float, count: int, course: int) -> list[bool]:
-    """Which of the blocks of a course go through all leaves: evenly spaced, staggered from course to course."""
+    """Select the through-stones of a course, evenly spaced and staggered from course to course."""
     if share == 0.0:
         return [False] * count
     start = 0.5 * (course % 2)
@@ -175,7 +175,7 @@ def are_through(share: float, count: int, course: int) -> list[bool]:
 
 
 def rubble(span: Span, levels: Span, size: float, course: int, below: Sequence[float]) -> list[np.ndarray]:
-    """Stones of unequal lengths with inclined head joints, of that mean length [m]: convex shapes (4, 2).
+    """Generate rubble stones of unequal lengths and inclined head joints, of a mean length [m]: shapes (4, 2).
 
     They look irregular and are always the same. below: upper ends of the head joints below [m], of which theirs keep
     clear.
@@ -195,7 +195,7 @@ def rubble(span: Span, levels: Span, size: float, course: int, below: Sequence[f
 
 
 def _clear(x: float, others: Sequence[float], reach: float) -> float:
-    """A place [m], moved aside where one of the others is closer than reach."""
+    """Move a place aside where another one is closer than reach [m]."""
     nearest = min(others, key=lambda other: abs(other - x), default=np.inf)
     if abs(nearest - x) >= reach:
         return x
@@ -203,5 +203,5 @@ def _clear(x: float, others: Sequence[float], reach: float) -> float:
 
 
 def _scattered(count: int, start: int) -> np.ndarray:
-    """Numbers from 0 to 1 that look random and are always the same: multiples of the golden ratio."""
+    """Return reproducible scattered numbers from 0 to 1: multiples of the golden ratio."""
     return np.modf((start + np.arange(count)) * 0.6180339887498949)[0]

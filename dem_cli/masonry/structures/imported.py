@@ -1,4 +1,4 @@
-"""Structures of other programs: meshes (STL, OBJ, PLY, compas JSON), drawings (DXF, SVG); each solid is a block."""
+"""Import structures of other programs: meshes (STL, OBJ, PLY, compas JSON), drawings (DXF, SVG), a block per solid."""
 
 from __future__ import annotations
 
@@ -129,20 +129,20 @@ class Import(StructureBase):
 
 
 class ImportedStructure(NamedTuple):
-    """Blocks of a file, and what a reader should know about how they were read."""
+    """Imported blocks of a file, with notes on how they were read."""
 
     blocks: list[Block]
     notes: list[str]
-    divided: dict[str, int]  # names in the file with several solids that nobody said what they are, and how many
+    divided: dict[str, int]  # names of several solids for which `shells` is not given, and how many
 
 
 def build(table: Import) -> list[Block]:
-    """Blocks in local coordinates, in the order of the file."""
+    """Import the blocks of a file in local coordinates, in its order."""
     return imported(table).blocks
 
 
 def unsaid(table: Import) -> list[tuple[str, str]]:
-    """`shells`, where names of the file have several solids each and nobody said what they are."""
+    """Report the unset key `shells` where names of the file have several solids each."""
     found = imported(table).divided
     if not found:
         return []
@@ -154,7 +154,7 @@ def unsaid(table: Import) -> list[tuple[str, str]]:
 
 @drawn_once
 def imported(table: Import) -> ImportedStructure:
-    """Blocks of a file in local coordinates, in its order, with notes. Raises KeyProblem."""
+    """Import the blocks of a file in local coordinates, in its order, with notes. Raises KeyProblem."""
     from dem_cli.masonry.imports.solids import solids_of
 
     try:
@@ -172,12 +172,12 @@ def imported(table: Import) -> ImportedStructure:
 
 
 def _named(bodies: Sequence[FileBody]) -> list[FileBody]:
-    """Outlines without a name are called as their layer."""
+    """Name unnamed outlines after their layer."""
     return [body if body.name or body.faces else body._replace(name=body.layer) for body in bodies]
 
 
 def _kept(table: Import, contents: Contents, skipped: set[str]) -> Contents:
-    """Without the layers that are skipped. Raises KeyProblem for layers that are not told about, or not there."""
+    """Remove the skipped layers. Raises KeyProblem for unknown layers, and for those the case does not mention."""
     if not table.layers:
         return contents
     found = Counter(body.layer for body in contents.bodies)
@@ -220,7 +220,7 @@ def _blocks(table: Import, solids: Sequence[Any]) -> list[Block]:
 
 
 def _divided(table: Import, solids: Sequence[Any]) -> dict[str, int]:
-    """Names of several solids that are blocks of their own; a layer, and one name for all, say nothing."""
+    """Count the solids of names that have several blocks; layers, and one name for all, do not count."""
     found = format_of(table.file)
     drawing = found is not None and found.flat
     named = [solid for solid in solids if not solid.compound and not (drawing and solid.name == solid.layer)]
@@ -231,7 +231,7 @@ def _divided(table: Import, solids: Sequence[Any]) -> dict[str, int]:
 
 
 def local_names(table: Import, given: Sequence[str]) -> list[str]:
-    """Names of blocks without the id of the structure, each once."""
+    """Return unique names of blocks without the id of the structure."""
     if table.names == "numbers" or not any(given):
         return [str(k + 1) for k in range(len(given))]
     prefix = f"{table.id}-"
@@ -254,7 +254,7 @@ def local_names(table: Import, given: Sequence[str]) -> list[str]:
 
 
 def _fixed(table: Import, solids: Sequence[Any], names: Sequence[str]) -> list[bool]:
-    """Which solids are fixed: by the file, their layer, a name or pattern, or their level."""
+    """Determine which solids are fixed: by the file, their layer, a name or pattern, or their level."""
     found = [
         solid.fixed or table.layers.get(solid.layer, PLAIN).fixed or _below(table, solid.parts) for solid in solids
     ]

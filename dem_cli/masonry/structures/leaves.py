@@ -1,4 +1,4 @@
-"""Leaves of a wall: walls side by side that its thickness consists of, stones in them or through all, with names."""
+"""Leaves of a wall: parallel layers of its thickness, stones in one or through all of them, and their names."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ LEAVES = "abc"  # names of leaves, from the right of the axis (the front, −y) 
 
 
 def depths_of(whole: Span, leaves: int) -> list[Span]:
-    """Of each of some equal leaves from where to where it goes square to the wall [m]."""
+    """Divide the thickness of a wall into equal leaves; interval of each square to the wall [m]."""
     low, high = whole
     at = ((high - low) * np.arange(leaves + 1) / leaves + low).tolist()
     return list(zip(at[:-1], at[1:], strict=True))
 
 
 def in_leaves(stone: Stone, depths: Sequence[Span]) -> Iterator[Stone]:
-    """A stone that goes through, as one stone in each leaf."""
+    """Split a through-stone into one stone in each leaf."""
     for leaf, across in zip(LEAVES, depths, strict=False):
         yield stone._replace(parts=tuple(part._replace(across=across) for part in stone.parts), leaf=leaf)
 
 
 def numbered(stones: Sequence[Stone]) -> Iterator[tuple[str, Stone]]:
-    """Stones by course, from left to right, as "<course>-<number>", in leaves of their own with a letter after that.
+    """Name stones "<course>-<number>" from left to right, with a letter for leaves of their own.
 
     Those that go through count in every leaf and are named as in the first. Those with a name of their own keep it.
     """

@@ -1,4 +1,4 @@
-"""Masonry of one wall, straight in plan: courses around openings, below its top, in leaves; the blocks that it has.
+"""Masonry of one straight wall: courses around openings, below its top, in leaves, and its blocks.
 
 Drawn in the elevation of the wall, x along it, y up. Each course may begin and end where it likes and be interrupted,
 so that walls that meet pass through each other in alternate courses.
@@ -25,7 +25,7 @@ SMALL = 1e-6  # of a block's smaller side: what is narrower is not made
 
 
 class Core(CaseModel):
-    """Rubble between the two faces of a wall."""
+    """Core of rubble between the two faces of a wall."""
 
     thickness: Positive = Field(description="across the wall; the faces share the rest [m]", examples=[0.3])
     material: str = Field("", description="a name in [materials]; default: that of the wall", examples=["rubble"])
@@ -35,7 +35,7 @@ class Core(CaseModel):
 
 
 class Quoins(CaseModel):
-    """Larger stones at both ends of a wall, through its whole thickness, alternately long and short."""
+    """Quoins: larger stones at both ends of a wall, through its whole thickness, alternately long and short."""
 
     length: Positive = Field(description="length of the long ones [m]; the short ones are half of it", examples=[0.6])
     height: int = Field(1, ge=1, le=100, description="courses that one of them is high", examples=[2])
@@ -44,7 +44,7 @@ class Quoins(CaseModel):
 
 @dataclass(frozen=True)
 class Masonry:
-    """What a wall is made of, in its elevation."""
+    """Masonry of a wall in elevation: courses, bond, leaves, openings and top."""
 
     length: float  # of a full block [m]
     thickness: float  # of the wall [m]; half of it lies to either side
@@ -66,27 +66,27 @@ class Masonry:
     top: tops.Profile | None = None
 
     def pattern(self, k: int) -> courses.Pattern:
-        """What its bond lays in course k, from 0."""
+        """Return the bond pattern of course k, from 0."""
         course = k + (0 if self.first == "full" else 1)
         return courses.pattern_of(self.bond, self.offset, course, self.block_length(k))
 
     def block_length(self, k: int) -> float:
-        """Of a full block in course k [m]."""
+        """Return the length of a full block in course k [m]."""
         return self.lengths[k] if self.lengths else self.length
 
     def levels_of(self, k: int) -> Span:
-        """Lower and upper bed joint of course k [m]."""
+        """Return the lower and upper bed joint of course k [m]."""
         low, high = self.levels[k : k + 2].tolist()
         return (low, high)
 
     @property
     def whole(self) -> Span:
-        """From where to where it goes square to itself [m]."""
+        """Interval of the whole thickness [m]."""
         return (-self.thickness / 2.0, self.thickness / 2.0)
 
     @property
     def depths(self) -> list[Span]:
-        """Of each leaf from where to where it goes square to the wall [m]."""
+        """Interval of each leaf across the wall [m]."""
         if self.core is None:
             return depths_of(self.whole, self.leaves)
         half = self.thickness / 2.0
@@ -94,7 +94,7 @@ class Masonry:
         return list(zip(at[:-1], at[1:], strict=True))
 
     def plan(self, k: int, taken: Sequence[Span], voids: Sequence[Void], below: Sequence[float]) -> CoursePlan:
-        """Course k, with quoins and openings in its way, above these head joints."""
+        """Plan course k with quoins and openings in its way, above these head joints."""
         low, high = self.levels_of(k)
         stops = [x for void in voids for x in void.stops(low, high, self.small)]
         stops += [] if self.top is None else tops.stops(self.top, low, high)
@@ -102,11 +102,11 @@ class Masonry:
         return CoursePlan(low, high, self.spans[k], taken, length, pattern, self.anchor, stops, below)
 
     def full(self, k: int) -> float:
-        """Area of a full block of course k [m2]."""
+        """Return the area of a full block of course k [m2]."""
         low, high = self.levels_of(k)
         return self.block_length(k) * (high - low)
 
     @property
     def small(self) -> float:
-        """What is narrower is not made [m]."""
+        """Least width of a piece; narrower ones are not made [m]."""
         return SMALL * min(self.length, float(np.diff(self.levels).min()))

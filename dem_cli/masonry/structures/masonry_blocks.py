@@ -1,4 +1,4 @@
-"""Blocks of a wall: stones cut around openings and below its top, small pieces joined to neighbours, with names."""
+"""Create the blocks of a wall: stones cut around openings and below its top, small pieces merged, with names."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WELD = 1e-10  # of a block: round-off of corners that are the same
 
 
 def masonry_blocks(masonry: Masonry) -> list[Block]:
-    """Blocks of a wall in its elevation, with the depth that they have in space as `across`.
+    """Create the blocks of a wall in elevation, with their depth in space as `across`.
 
     Names: "<course>-<number>", in leaves of their own "<course>-<number>a" (front), "b", "c"; "quoin-left-<number>",
     "quoin-right-<number>"; "lintel-<opening>", "arch-<opening>-<number>". What is cut to less than a quarter of a block
@@ -38,7 +38,7 @@ def masonry_blocks(masonry: Masonry) -> list[Block]:
 
 
 def _welded(stones: Sequence[Stone], gap: float) -> list[Stone]:
-    """With the same corners where they share them, exactly."""
+    """Make shared corners of stones exactly equal."""
     shapes = iter(cuts.welded([part.shape for stone in stones for part in stone.parts], gap))
     return [stone._replace(parts=tuple(Part(next(shapes), part.across) for part in stone.parts)) for stone in stones]
 
@@ -56,7 +56,7 @@ def _block(name: str, stone: Stone, masonry: Masonry) -> Block:
 
 
 def _over_openings(masonry: Masonry, voids: Sequence[Void]) -> Iterator[Stone]:
-    """Lintels and voussoirs."""
+    """Yield lintels and voussoirs."""
     for i, (opening, void) in enumerate(zip(masonry.openings, voids, strict=True)):
         if opening.lintel and opening.lintel_box:
             x0, y0, x1, y1 = opening.lintel_box
@@ -69,7 +69,7 @@ def _over_openings(masonry: Masonry, voids: Sequence[Void]) -> Iterator[Stone]:
 
 
 def _cut_stones(masonry: Masonry, voids: Sequence[Void]) -> Iterator[Stone]:
-    """Stones of all courses, with what openings and the top of the wall leave of each."""
+    """Cut the stones of all courses around openings and below the top of the wall."""
     small, reaches = masonry.small, [(void, void.reach) for void in voids]
     for stone in uncut_stones(masonry, voids):
         x0, y0, x1, y1 = stone.box

@@ -1,4 +1,4 @@
-"""Stones of a wall as they are laid, before openings are cut: courses, leaves, through-stones, rubble core, quoins."""
+"""Lay the uncut stones of a wall: courses, leaves, through-stones, rubble core, quoins."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from dem_cli.masonry.structures.voids import Void
 
 
 def uncut_stones(masonry: Masonry, voids: Sequence[Void]) -> Iterator[Stone]:
-    """Stones of all courses, uncut, and quoins."""
+    """Yield the uncut stones of all courses, and quoins."""
     taken = _quoin_spans(masonry)
     yield from _quoins(masonry, taken)
     runs: list[list[list[Piece]]] = []
@@ -46,7 +46,7 @@ def uncut_stones(masonry: Masonry, voids: Sequence[Void]) -> Iterator[Stone]:
 
 
 def _quoin_spans(masonry: Masonry) -> dict[tuple[str, int], Span]:
-    """(end and number of the quoin, course) -> from where to where it goes."""
+    """Return the interval of each quoin: (end and number of the quoin, course) -> span."""
     quoins, found = masonry.quoins, {}
     if quoins is None:
         return {}
@@ -79,7 +79,7 @@ def _quoins(masonry: Masonry, taken: dict[tuple[str, int], Span]) -> Iterator[St
 
 
 def _in_leaves(masonry: Masonry, k: int, runs: Sequence[Sequence[Piece]], tips: Sequence[Span]) -> Iterator[Stone]:
-    """Stones of course k: pieces through the whole wall, or side by side in its leaves.
+    """Yield the stones of course k: through the whole wall, or side by side in its leaves.
 
     tips: thin leftovers beside openings, which become parts of other stones.
     """
@@ -90,14 +90,14 @@ def _in_leaves(masonry: Masonry, k: int, runs: Sequence[Sequence[Piece]], tips: 
 
 
 def _through(masonry: Masonry, k: int, runs: Sequence[Sequence[Piece]]) -> list[tuple[Piece, bool]]:
-    """Pieces of course k, and whether they go through all leaves."""
+    """Return the pieces of course k, and whether they go through all leaves."""
     pieces = [piece for run in runs for piece in run]
     through = courses.are_through(masonry.through_stones, len(pieces), k)
     return [(p, t or (p.header and masonry.leaves > 1)) for p, t in zip(pieces, through, strict=True)]
 
 
 def _side_by_side(masonry: Masonry, k: int, span: Span, whole: bool) -> Iterator[Stone]:
-    """One stone, or one in each leaf but the core."""
+    """Yield one through-stone, or one stone in each leaf except the core."""
     low, high = masonry.levels_of(k)
     shape = rectangle(span[0], low, span[1] - span[0], high - low)
     stone = Stone(k + 1, (Part(shape, masonry.whole),), masonry.full(k))
@@ -113,7 +113,7 @@ LaidCourse = tuple[Sequence[Sequence[Piece]], Sequence[Span]]  # runs of pieces,
 
 
 def _core_stones(masonry: Masonry, laid: Sequence[LaidCourse]) -> Iterator[Stone]:
-    """Rubble between the faces of all courses, where no stone goes through."""
+    """Yield rubble between the faces of all courses, where no stone goes through."""
     if masonry.core is None:
         return
     heads: list[float] = []  # upper ends of the head joints of the course below
@@ -128,7 +128,7 @@ def _core_stones(masonry: Masonry, laid: Sequence[LaidCourse]) -> Iterator[Stone
 
 
 def _joined(spans: Sequence[Span]) -> list[Span]:
-    """Spans from left to right, those that meet as one."""
+    """Merge adjacent spans, from left to right."""
     found: list[Span] = []
     for span in spans:
         if found and found[-1][1] == span[0]:

@@ -1,4 +1,4 @@
-"""Openings in masonry: doors and windows, lintels, arches of voussoirs over them; what is cut out of the courses."""
+"""Openings in masonry: doors and windows with lintels or arches, cut out of the courses."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NARROWEST_PIECE = 1e-6  # parts of a block below this fraction of its length or 
 
 
 class Lintel(CaseModel):
-    """One block over an opening, in place of whatever it crosses."""
+    """Lintel over an opening: a single block, which replaces the stones that it crosses."""
 
     height: Positive = Field(description="height [m]", examples=[0.2])
     bearing: NonNegative = Field(description="length that rests on the wall at each side [m]", examples=[0.15])
@@ -25,7 +25,7 @@ class Lintel(CaseModel):
 
 
 class OpeningArch(CaseModel):
-    """An arch over an opening, as wide as it; courses are cut around its outer face."""
+    """Arch over an opening, of its width; courses are cut around its outer face."""
 
     shape: Literal["segmental", "semicircular", "pointed", "flat", "circle"] | None = Field(
         None,
@@ -48,7 +48,7 @@ class OpeningArch(CaseModel):
 
     @property
     def form(self) -> str:
-        """Its shape, given or by default."""
+        """Shape of the arch, given or by default."""
         return self.shape or ("segmental" if self.rise is not None else "semicircular")
 
     @model_validator(mode="after")
@@ -61,7 +61,7 @@ class OpeningArch(CaseModel):
         return self
 
     def joints(self, span: float) -> np.ndarray:
-        """Its joints [inner, outer] from left to right, about mid-span and the springing, (voussoirs + 1, 2, 2).
+        """Compute the joints [inner, outer] of the arch, about mid-span and the springing, (voussoirs + 1, 2, 2).
 
         A circle: clockwise from below, about its centre, the first as the last.
         """
@@ -79,12 +79,12 @@ class OpeningArch(CaseModel):
 
 
 def _height_optional(schema: dict[str, Any]) -> None:
-    """In the JSON Schema: who gives a circle need not give its height."""
+    """Mark `height` as optional in the JSON Schema, since a circle needs none."""
     schema["required"] = [key for key in schema["required"] if key != "height"]
 
 
 class Opening(CaseModel):
-    """A rectangular hole; blocks that it cuts keep what is left of them as rectangles."""
+    """Rectangular opening; the rest of each block that it cuts stays as rectangles."""
 
     model_config = ConfigDict(json_schema_extra=_height_optional)
 
@@ -105,7 +105,7 @@ class Opening(CaseModel):
     @model_validator(mode="before")
     @classmethod
     def _as_high_as_wide(cls, data: Any) -> Any:
-        """A circle has one measure; where that is wrong, nothing is said of a height that nobody gave."""
+        """Set the height of a circular opening to its width, and validate only the given one."""
         arch = data.get("arch") if isinstance(data, dict) else None
         if not isinstance(arch, dict) or arch.get("shape") != "circle":
             return data
@@ -134,12 +134,12 @@ class Opening(CaseModel):
 
     @property
     def box(self) -> Box:
-        """Its rectangle."""
+        """Rectangle of the opening."""
         return (self.x, self.y, self.x + self.width, self.y + self.height)
 
     @property
     def lintel_box(self) -> Box | None:
-        """The rectangle of its lintel."""
+        """Rectangle of the lintel; None: there is none."""
         if self.lintel is None:
             return None
         low, bearing = self.y + self.height, self.lintel.bearing
@@ -147,7 +147,7 @@ class Opening(CaseModel):
 
     @property
     def void(self) -> Void:
-        """What it takes out of the courses of its wall."""
+        """Void that the opening cuts out of the courses of its wall."""
         boxes = tuple(box for box in (self.box, self.lintel_box) if box)
         if self.arch is None:
             return Void(boxes, np.empty((0, 2, 2)))
@@ -160,7 +160,7 @@ class Opening(CaseModel):
 
 
 def check_opening(opening: Opening, i: int, length: float, height: float) -> None:
-    """Raises KeyProblem where the opening, its lintel or its arch does not lie within the wall."""
+    """Raise KeyProblem where the opening, its lintel or its arch does not lie within the wall."""
     slack = 1.0 + NARROWEST_PIECE
     limits = [
         ("width", opening.x + opening.width, length, "x + width", "length"),
@@ -193,7 +193,7 @@ def _check_arch(opening: Opening, i: int, length: float, height: float) -> None:
 
 
 def check_apart(openings: Sequence[Opening]) -> None:
-    """Raises KeyProblem where an arch crosses another opening, its lintel or its arch."""
+    """Raise KeyProblem where an arch crosses another opening, its lintel or its arch."""
     for i, opening in enumerate(openings):
         for j, other in enumerate(openings[:i]):
             if opening.arch is None and other.arch is None:

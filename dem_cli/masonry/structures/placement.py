@@ -1,4 +1,4 @@
-"""Placement of generated blocks: from local ones to their final place, with full names; aliases for these.
+"""Place generated blocks: from local coordinates to their final place, with full names and aliases.
 
 Generators draw in a plane, x along the structure and y upwards. In 2D that is the plane of the case. In 3D it stands
 upright on the ground: blocks become prisms, half their thickness to either side of it, turned in plan about the origin.
@@ -28,12 +28,12 @@ CORNERS = {  # alias: where it is in the box around the free blocks, as fraction
 
 
 def full_id(prefix: str, local: str) -> str:
-    """Name of a block of a structure: "wall" and "3-2" -> "wall-3-2"."""
+    """Return the full name of a block of a structure: "wall" and "3-2" -> "wall-3-2"."""
     return f"{prefix}-{local}"
 
 
 def place(blocks: Sequence[Block], parameters: StructureBase, path: KeyPath, dimension: int = 2) -> list[Block]:
-    """Turns, then shifts the blocks of a generator; completes their ids and materials; notes their `path`."""
+    """Rotate, then shift the blocks of a generator; completes their ids and materials and records their `path`."""
     parts, others = PLACES[dimension](blocks, parameters)
     return [
         replace(
@@ -49,7 +49,7 @@ def place(blocks: Sequence[Block], parameters: StructureBase, path: KeyPath, dim
 
 
 def planar_places(blocks: Sequence[Block], parameters: StructureBase) -> tuple[Iterator[Any], dict[str, Any]]:
-    """Parts of all blocks in their final place, one after the other; other fields that change."""
+    """Return the parts of all blocks in their final place in the plane, and the other fields that change."""
     vertices = [part for block in blocks for part in block.parts]
     ends = np.cumsum([len(part) for part in vertices])[:-1]
     placed = polygon.moved(np.concatenate(vertices), parameters.rotation, parameters.origin)
@@ -57,7 +57,7 @@ def planar_places(blocks: Sequence[Block], parameters: StructureBase) -> tuple[I
 
 
 def spatial_places(blocks: Sequence[Block], parameters: StructureBase) -> tuple[Iterator[Any], dict[str, Any]]:
-    """The same in space, polygons as prisms, turned in plan: their depth is in their corners."""
+    """Return the parts of all blocks in their final place in space, polygons as prisms rotated in plan."""
     solids: list[Any] = [part for block in blocks for part in block.parts]
     flat = [k for k, part in enumerate(solids) if not isinstance(part, polyhedron.Polyhedron)]
     low, high = np.array([depth(block) for block in blocks for _ in block.parts])[flat].T
@@ -68,7 +68,7 @@ def spatial_places(blocks: Sequence[Block], parameters: StructureBase) -> tuple[
 
 
 def depth(block: Block) -> tuple[float, float]:
-    """From where to where a generated block goes, square to the plane that it is drawn in [m]."""
+    """Return the interval of a generated block square to its drawing plane [m]."""
     return block.across or (-block.thickness / 2.0, block.thickness / 2.0)
 
 
@@ -77,7 +77,7 @@ PLACES: dict[int, Places] = {2: planar_places, 3: spatial_places}
 
 
 def aliases(structures: Mapping[str, Sequence[Block]]) -> dict[str, str]:
-    """Alias -> block id, for structures {id: blocks with local ids, not yet turned}.
+    """Return alias -> block id for structures {id: blocks with local ids, before rotation}.
 
     Each has "<id>-top-right" and so on; where there is one structure only, "top-right" and the local ids
     ("base", "lintel-1") do as well. An alias never hides a block of that name.
@@ -92,7 +92,7 @@ def aliases(structures: Mapping[str, Sequence[Block]]) -> dict[str, str]:
 
 
 def corner_blocks(blocks: Sequence[Block]) -> dict[str, str]:
-    """Alias -> id of the free block whose box lies nearest to that corner of the box around all free blocks.
+    """Return alias -> id of the free block nearest to each corner of the box around all free blocks.
 
     Of several at the same distance: the one whose own centre lies nearest to the corner, then the first.
     """

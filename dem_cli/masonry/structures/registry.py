@@ -1,4 +1,4 @@
-"""The generators of [[structure]] by `kind`, each loaded when it is used. A new one: a file and a line here."""
+"""Registry of the generators of [[structure]] by `kind`, each loaded on use. A new one: a file and a line here."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from dem_cli.core.model.blocks import Block
 
 
 class Generator(NamedTuple):
-    """Generator of one kind of structure: a module with its table, `build` and what else it knows to say."""
+    """Generator of one kind of structure: a module with its table, `build` and optional functions."""
 
     kind: str  # as in the case file
     table: str  # the class of its parameters
@@ -20,22 +20,24 @@ class Generator(NamedTuple):
 
     @property
     def module(self) -> ModuleType:
-        """The module, imported now."""
+        """Module of the generator, imported on first use."""
         return import_module(self.place)
 
     @property
     def parameters(self) -> type[StructureBase]:
-        """Keys, units, ranges; its docstring says where its origin lies."""
+        """Class of the table: keys, units, ranges; its docstring states the local origin."""
         found: type[StructureBase] = getattr(self.module, self.table)
         return found
 
     def build(self, table: Any) -> list[Block]:
-        """Blocks with local places and ids; ValueError if impossible."""
+        """Generate the blocks with local places and ids; ValueError if impossible."""
         found: list[Block] = self.module.build(table)
         return found
 
     def said(self, what: str, table: Any, otherwise: Any) -> Any:
-        """What a function of the module says of a table; `otherwise` where it has none of that name."""
+        """Call an optional function of the generator's module on a table; `otherwise` where it has none of that
+        name.
+        """
         function: Callable[[Any], Any] | None = getattr(self.module, what, None)
         return otherwise if function is None else function(table)
 
@@ -61,22 +63,22 @@ GENERATORS: dict[str, Generator] = {
 
 
 def generated_blocks(table: Any, seed: int) -> list[Block]:
-    """Blocks of a structure, in local places; seed: of the case. Raises ValueError where it is impossible."""
+    """Generate the blocks of a structure in local places; seed: of the case."""
     return GENERATORS[table.kind].build(table.drawn_from(seed))
 
 
 def generated_figures(table: Any, seed: int) -> list[tuple[str, str]]:
-    """What a structure drew at random: label and text of each line; seed: of the case."""
+    """Describe the random parameters of a structure: label and text of each line; seed: of the case."""
     found: list[tuple[str, str]] = GENERATORS[table.kind].said("figures", table.drawn_from(seed), [])
     return found
 
 
 def loose_ends(table: Any) -> str:
-    """The key by which stones of a structure may slide out at its free ends; "": none does."""
+    """Return the key by which stones of a structure may slide out at its free ends; "": none does."""
     return str(GENERATORS[table.kind].said("loose_ends", table, ""))
 
 
 def unsaid(table: Any) -> list[tuple[str, str]]:
-    """Keys that a structure does not give although they matter here, and what was taken instead."""
+    """List the keys that a structure leaves out although they matter, and the values assumed."""
     found: list[tuple[str, str]] = GENERATORS[table.kind].said("unsaid", table, [])
     return found

@@ -1,4 +1,4 @@
-"""Sides of a wall in 3D: fixed columns or slabs that support a face, behind its whole length or strips at its ends."""
+"""Sides of a wall in 3D: fixed columns or slabs behind its whole length or in strips at its ends."""
 
 from __future__ import annotations
 
@@ -46,16 +46,16 @@ class Side(CaseModel):
 
     @property
     def long(self) -> bool:
-        """Whether it is behind a long face of the wall."""
+        """Tell whether the side is behind a long face of the wall."""
         return self.face[1] == "y"
 
     def widest(self, length: float) -> float:
-        """The widest strips for which there is room [m]."""
+        """Return the largest possible width of the strips [m]."""
         return length / 2.0 if self.ends == "both" else length
 
 
 class SupportedWall(NamedTuple):
-    """What sides need to know of their wall [m]."""
+    """Dimensions of a wall with fixed sides [m]."""
 
     length: float
     height: float
@@ -64,7 +64,7 @@ class SupportedWall(NamedTuple):
 
 
 def side_blocks(sides: tuple[Side, ...], wall: SupportedWall) -> list[Block]:
-    """Fixed blocks behind the faces of a wall, in local places."""
+    """Create the fixed blocks behind the faces of a wall, in local places."""
     return [block for i, side in enumerate(sides) for block in _behind(side, i, wall)]
 
 

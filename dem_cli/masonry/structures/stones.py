@@ -1,4 +1,4 @@
-"""Stones of a wall while it is drawn: pieces that openings leave of a block, small ones joined to their neighbours."""
+"""Stones of a wall while it is drawn: pieces left by openings, small ones joined to their neighbours."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ ALMOST = 1e-6  # relative: a stone that much below a quarter of a block is one
 
 
 class Part(NamedTuple):
-    """A convex piece of a stone."""
+    """Convex piece of a stone."""
 
     shape: np.ndarray  # in the elevation of the wall, counter-clockwise [m], (n, 2)
     across: Span  # from where to where it goes square to it [m]
 
     @property
     def volume(self) -> float:
-        """[m3]"""
+        """Volume [m3]."""
         return polygon.area(self.shape) * (self.across[1] - self.across[0])
 
 
 class Stone(NamedTuple):
-    """What becomes a block."""
+    """Stone of a wall, which becomes a block."""
 
     course: int  # from 1
     parts: tuple[Part, ...]
@@ -37,24 +37,24 @@ class Stone(NamedTuple):
 
     @property
     def share(self) -> float:
-        """Its size, in full blocks that are as deep as it."""
+        """Volume of the stone as a share of a full block of the same depth."""
         deep = max(part.across[1] - part.across[0] for part in self.parts)
         return sum(part.volume for part in self.parts) / (self.full * deep)
 
     @property
     def is_small(self) -> bool:
-        """Whether it is below a quarter of a block."""
+        """Tell whether the stone is smaller than a quarter of a block."""
         return self.share < LEAST_PIECE * (1.0 - ALMOST)
 
     @property
     def box(self) -> np.ndarray:
-        """[left, bottom, right, top] in elevation [m]."""
+        """Bounding box [left, bottom, right, top] in elevation [m]."""
         corners = np.concatenate([part.shape for part in self.parts])
         return np.concatenate([corners.min(axis=0), corners.max(axis=0)])
 
 
 def put_together(stones: Sequence[Stone], gap: float) -> list[Stone]:
-    """Stones of which none is below a quarter of a block, as long as it touches another one.
+    """Merge stones below a quarter of a block with the stones that they touch.
 
     The smallest one first, each becomes a part of the stone with which it shares most of its face: of one in the same
     leaf if there is one. Parts that are convex together become one. gap: edges so close touch [m].
@@ -92,7 +92,7 @@ def put_together(stones: Sequence[Stone], gap: float) -> list[Stone]:
 
 
 def _shared_face(a: Stone, b: Stone, gap: float) -> float:
-    """Area in which two stones touch, square to the elevation [m2]."""
+    """Return the contact area of two stones, square to the elevation [m2]."""
     return sum(
         cuts.common_edge(p.shape, q.shape, gap) * depth
         for p in a.parts
@@ -102,7 +102,7 @@ def _shared_face(a: Stone, b: Stone, gap: float) -> float:
 
 
 def _simpler(stone: Stone, gap: float) -> Stone:
-    """With as few parts as are convex together."""
+    """Merge the parts of a stone that are convex together."""
     return stone._replace(parts=tuple(_joined(stone.parts, gap)))
 
 

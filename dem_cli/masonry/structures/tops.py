@@ -1,4 +1,4 @@
-"""Tops of walls: gables, cut along their slopes or stepped, and profiles; what of the courses lies below them."""
+"""Tops of walls: gables, sloped or stepped, and profiles; the masonry of the courses below them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Profile = np.ndarray  # the top from left to right, (n, 2) [m]
 
 
 class Gable(CaseModel):
-    """A triangle of masonry on top of a wall."""
+    """Gable: a triangle of masonry on top of a wall."""
 
     height: Positive = Field(description="from the top of the courses to the ridge [m]", examples=[1.5])
     ridge: Positive | None = Field(
@@ -26,13 +26,13 @@ class Gable(CaseModel):
 
 
 def gable_profile(gable: Gable, start: float, end: float, foot: float) -> Profile:
-    """The outline of a gable over a wall from start to end whose courses end at the level `foot` [m], (3, 2)."""
+    """Return the outline of a gable over a wall whose courses end at the level `foot` [m], (3, 2)."""
     ridge = (start + end) / 2.0 if gable.ridge is None else gable.ridge
     return np.array([[start, foot], [ridge, foot + gable.height], [end, foot]])
 
 
 def with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:
-    """Bed joints [m] with those of courses of that height in a gable: up to its ridge or above; stepped: below it."""
+    """Add the bed joints of a gable in courses of that height [m]: up to its ridge or above; stepped: below it."""
     count = gable.height / course
     check_count(count, "gable", "height")
     whole = int(np.floor(count + 1e-6)) if gable.edges == "stepped" else int(np.ceil(count - 1e-6))
@@ -40,20 +40,20 @@ def with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:
 
 
 def level_span(profile: Profile, level: float) -> tuple[float, float]:
-    """From where to where the masonry below a gable goes at a level [m]."""
+    """Return both ends of the masonry below a gable at a level [m]."""
     (x0, foot), (ridge, top), (x1, _) = profile.tolist()
     share = min(max((level - foot) / (top - foot), 0.0), 1.0)
     return (x0 + share * (ridge - x0), x1 + share * (ridge - x1))
 
 
 def cuts_off(profile: Profile, shape: np.ndarray, gap: float) -> bool:
-    """Whether a part of a convex polygon that is wider than `gap` [m] lies above a profile."""
+    """Test whether a part of a convex polygon wider than `gap` [m] lies above a profile."""
     left = sum(polygon.area(piece) for piece in below(shape, profile, gap))
     return left < polygon.area(shape) - gap * polygon.size(shape)
 
 
 def stops(profile: Profile, low: float, high: float) -> list[float]:
-    """Where a profile has corners in a course, or meets one of its bed joints [m]."""
+    """Return the places where a profile has corners in a course, or meets one of its bed joints [m]."""
     found = [x for x, y in profile.tolist() if low <= y <= high]
     for (x0, y0), (x1, y1) in zip(profile[:-1].tolist(), profile[1:].tolist(), strict=True):
         found += [x0 + (y - y0) / (y1 - y0) * (x1 - x0) for y in (low, high) if (y0 < y) != (y1 < y)]
@@ -61,7 +61,7 @@ def stops(profile: Profile, low: float, high: float) -> list[float]:
 
 
 def below(shape: np.ndarray, profile: Profile, gap: float) -> list[np.ndarray]:
-    """Convex pieces of a convex polygon that lie below a profile; beside its ends that is level."""
+    """Cut a convex polygon to the part below a profile, in convex pieces; beside its ends the profile is level."""
     low, high = shape[:, 0].min(), shape[:, 0].max()
     inner = profile[(profile[:, 0] > low) & (profile[:, 0] < high)]
     tops = [*np.interp([low, high], *profile.T), *inner[:, 1]]
@@ -77,7 +77,7 @@ def below(shape: np.ndarray, profile: Profile, gap: float) -> list[np.ndarray]:
 
 
 def check_profile(profile: tuple[Pair, ...], length: float, height: float) -> None:
-    """Raises KeyProblem where a profile is not the top of a wall that is so long and high [m]."""
+    """Raise KeyProblem where a profile does not fit the top of a wall of that length and height [m]."""
     if len(profile) < 2:
         raise KeyProblem("a profile has at least two points", "profile")
     ends = ((0, 0.0, "0, the left end"), (len(profile) - 1, length, f"{length:g}, the right end"))

@@ -1,4 +1,4 @@
-"""Voids in masonry: what openings, their lintels and arches take out of the courses, in the elevation of a wall."""
+"""Voids in masonry: openings, lintels and arches cut out of the courses, in elevation."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LEAST_SLOPE = 0.3  # sine of the slope of a joint of an arch, below which its co
 
 
 class Void(NamedTuple):
-    """An opening with what is built over it."""
+    """Void of an opening with its lintel or arch."""
 
     boxes: tuple[Box, ...]  # the opening where it is rectangular, its lintel
     joints: np.ndarray  # of its arch [inner, outer] from left to right, (n + 1, 2, 2) [m]; (0, 2, 2): it has none
@@ -34,13 +34,13 @@ class Void(NamedTuple):
 
     @property
     def outline(self) -> np.ndarray:
-        """Convex outline of the arch and what is below it, counter-clockwise, (n, 2)."""
+        """Convex outline of the arch and the opening below it, counter-clockwise, (n, 2)."""
         outer = self.joints[::-1, 1]
         return outer[1:] if self.full else np.concatenate([self.joints[[0, -1], 0], outer])
 
     @property
     def outlines(self) -> list[np.ndarray]:
-        """Convex shapes that it consists of; they may overlap."""
+        """Convex shapes that form the void; they may overlap."""
         boxes = [polygon.rectangle(x0, y0, x1 - x0, y1 - y0) for x0, y0, x1, y1 in self.boxes]
         return [*boxes, *self.shapes, *([self.outline] if len(self.joints) else [])]
 
@@ -51,13 +51,13 @@ class Void(NamedTuple):
 
     @property
     def reach(self) -> Box:
-        """The box around it."""
+        """Bounding box of the void."""
         corners = np.concatenate(self.outlines)
         (x0, y0), (x1, y1) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
         return (x0, y0, x1, y1)
 
     def fitted(self, levels: np.ndarray) -> Void:
-        """The same where no outer corner of its arch is all but on a bed joint: those are drawn along their joints."""
+        """Move the outer corners of the arch off nearby bed joints, along their joints."""
         joints = self.joints.copy()
         for k, (inner, outer) in enumerate(self.joints):
             way = (outer - inner) / np.hypot(*(outer - inner))
@@ -72,12 +72,12 @@ class Void(NamedTuple):
         return found if all(map(polygon.is_convex, [*found.outlines, *found.voussoirs])) else self
 
     def span_at(self, level: float, side: int, gap: float) -> Span | None:
-        """From where to where it goes just above a level (side: 1) or just below it (−1); None: not there."""
+        """Return the span just above a level (side: 1) or just below it (−1); None: not there."""
         ends = [end for shape in self.outlines for end in _crossing(shape, level, side * gap)]
         return (min(ends), max(ends)) if ends else None
 
     def stops(self, low: float, high: float, gap: float) -> list[float]:
-        """Where along a course its outline has corners or meets a bed joint."""
+        """Return the places along a course where the outline has corners or meets a bed joint."""
         found: list[float] = []
         for shape in self.outlines:
             inside = (shape[:, 1] > low + gap) & (shape[:, 1] < high - gap)
@@ -85,7 +85,7 @@ class Void(NamedTuple):
         return found
 
     def left_of(self, shape: np.ndarray, gap: float) -> list[np.ndarray]:
-        """Convex pieces that are left of a convex polygon without it."""
+        """Subtract the void from a convex polygon, in convex pieces."""
         pieces = [shape]
         for box in self.boxes:
             pieces = [rest for piece in pieces for rest in cuts.less_box(piece, box, gap)]
@@ -96,7 +96,7 @@ class Void(NamedTuple):
         return pieces
 
     def _around_arch(self, shape: np.ndarray, gap: float) -> list[np.ndarray]:
-        """What is left outside of the arch, divided by its joints drawn on outwards."""
+        """Divide the rest of a polygon outside the arch by its extended joints."""
         if not self._meets_arch(shape, gap):
             return [shape]
         joints, found, rest = self.joints, [], shape
@@ -120,13 +120,13 @@ class Void(NamedTuple):
 
 
 def plain_void(shape: np.ndarray) -> Void:
-    """What a convex polygon (n, 2) takes out, with nothing built over it."""
+    """Create a void of a convex polygon (n, 2), with nothing built over it."""
     box, no_arch = polygon.upright_box(shape), np.empty((0, 2, 2))
     return Void((box,), no_arch) if box else Void((), no_arch, shapes=(shape,))
 
 
 def _aimed(joints: np.ndarray, shape: np.ndarray, full: bool) -> np.ndarray:
-    """Joints of an arch, turned about their outer corner where they would leave a shape close to one of its corners.
+    """Turn joints of an arch about their outer corner where they would end close to a corner of a shape.
 
     No further than half of the angle between the outer faces there, so that pieces stay convex.
     """
@@ -148,7 +148,7 @@ def _aimed(joints: np.ndarray, shape: np.ndarray, full: bool) -> np.ndarray:
 
 
 def _crossing(shape: np.ndarray, level: float, above: float) -> list[float]:
-    """Where the edges of a convex polygon cross a level, none or two; at its very top or foot only as it goes on there.
+    """Return where the edges of a convex polygon cross a level: none or two places.
 
     above: corners so far above the level lie on it [m], negative: below.
     """
@@ -160,7 +160,7 @@ def _crossing(shape: np.ndarray, level: float, above: float) -> list[float]:
 
 
 def overlap(a: Sequence[np.ndarray], b: Sequence[np.ndarray]) -> float:
-    """Largest area that a convex shape of one list shares with one of the other [m2]."""
+    """Return the largest area that a convex shape of one list shares with one of the other [m2]."""
     from dem_cli.core.geometry.compounds import clipped
 
     shared = [clipped(p, q) for p in a for q in b if (p.min(0) < q.max(0)).all() and (q.min(0) < p.max(0)).all()]

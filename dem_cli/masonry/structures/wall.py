@@ -1,4 +1,4 @@
-"""Walls of rectangular blocks in courses: what a case file says of one."""
+"""Table of a wall of rectangular blocks in courses."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ OF_OUTLINE = ("courses", "blocks_per_course", "length", "course_heights", "cours
 
 
 class Wall(BondKeys, Outlined):
-    """Blocks in courses from the bottom up. Local origin: lower left corner of the wall, on top of its base.
+    """Wall of blocks in courses from the bottom up. Local origin: lower left corner of the wall, on top of its base.
 
     In 3D half of the thickness lies to either side of the origin.
 
@@ -130,12 +130,12 @@ class Wall(BondKeys, Outlined):
 
     @property
     def all_openings(self) -> tuple[Opening, ...]:
-        """Those of the case and, after them, those drawn."""
+        """Openings of the case followed by those of the drawing."""
         return self.with_drawn(self.openings)
 
     @property
     def quoin_courses(self) -> int:
-        """How many courses have quoins: those at whose ends the outline is upright."""
+        """Number of courses with quoins: those at whose ends the outline is upright."""
         if self.outline is None:
             return len(self.levels) - 1
         eaves = self.outline.drawn.eaves * (1.0 + NARROWEST_PIECE)
@@ -143,19 +143,19 @@ class Wall(BondKeys, Outlined):
 
     @property
     def top_line(self) -> tops.Profile | None:
-        """The line of the top from left to right, of a gable or a profile; None: level, or drawn in the outline."""
+        """Line of the top from left to right, of a gable or a profile; None: level, or drawn in the outline."""
         if self.gable:
             return tops.gable_profile(self.gable, 0.0, self.extent, self.courses_top)
         return np.array(self.profile) if self.profile else None
 
     @property
     def is_plain(self) -> bool:
-        """Whether blocks and what is cut of them stay as they fall, however short: one leaf, holes without arches."""
+        """Tell whether cut blocks stay however short: one leaf, holes without arches."""
         return not self._shaped_by
 
     @property
     def _shaped_by(self) -> list[str]:
-        """Keys by which it is laid without short pieces."""
+        """Keys that require masonry without short pieces."""
         given = [key for key in ("length", "outline", "core", "quoins", "gable", "profile") if getattr(self, key)]
         given += ["bond"] * (self.bond in HEADER_BONDS) + ["leaves"] * (self.leaves > 1)
         return given + ["openings"] * any(opening.arch for opening in self.openings)
@@ -202,7 +202,7 @@ class Wall(BondKeys, Outlined):
 
 
 def _check_leaves(wall: Wall) -> None:
-    """Raises KeyProblem where leaves, a core and quoins do not go together."""
+    """Raise KeyProblem where leaves, a core and quoins contradict each other."""
     if wall.core and wall.leaves != 3:
         raise KeyProblem("a core is the middle one of three leaves: give leaves = 3", "core")
     if wall.core and wall.core.thickness >= wall.thickness:
@@ -216,7 +216,7 @@ def _check_leaves(wall: Wall) -> None:
 
 
 def _check_top(wall: Wall) -> None:
-    """Raises KeyProblem where a gable or a profile is not the top of the wall, or openings cross it."""
+    """Raise KeyProblem where a gable or a profile is not the top of the wall, or openings cross it."""
     if wall.gable and wall.profile:
         raise KeyProblem("a wall has a gable or a profile, not both", "profile")
     if wall.profile:
@@ -234,7 +234,7 @@ def _check_top(wall: Wall) -> None:
 
 
 def _check_side(wall: Wall, side: Side, i: int) -> None:
-    """Raises KeyProblem where a side does not fit the wall."""
+    """Raise KeyProblem where a side does not fit the wall."""
     widest = side.widest(wall.extent)
     if side.strip is not None and side.strip > widest * (1.0 + NARROWEST_PIECE):
         of = f"{'half ' if side.ends == 'both' else ''}the length of the wall"

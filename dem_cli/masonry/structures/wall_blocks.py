@@ -1,4 +1,4 @@
-"""Blocks of a wall in courses: rectangles as they fall, or masonry without short pieces; base, sides, lintels."""
+"""Generate the blocks of a wall in courses: plain rectangles, or masonry without short pieces; base, sides, lintels."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from dem_cli.masonry.structures.wall_outline import hollows
 
 
 def build(wall: Wall) -> list[Block]:
-    """Blocks in local coordinates, course by course from below, the base first, lintels last."""
+    """Generate the blocks of a wall, course by course from below, the base first, lintels last."""
     if wall.is_plain:
         boxes = [_course(wall, k) for k in range(len(wall.levels) - 1)]
         ends = (min(box[0, 0] for box in boxes), max(box[-1, 2] for box in boxes))
@@ -39,7 +39,7 @@ def build(wall: Wall) -> list[Block]:
 
 
 def masonry_of(wall: Wall) -> Masonry:
-    """What a wall is made of that is laid without short pieces."""
+    """Describe the masonry of a wall that is laid without short pieces."""
     levels = wall.levels
     courses = len(levels) - 1
     if wall.gable:
@@ -70,7 +70,7 @@ def masonry_of(wall: Wall) -> Masonry:
 
 
 def _plain_blocks(wall: Wall, boxes: list[np.ndarray]) -> list[Block]:
-    """Blocks of courses (n, 4) and what openings leave of them, rectangles; lintels last."""
+    """Create the blocks of rectangles (n, 4) cut by openings; lintels last."""
     holes = [opening.box for opening in wall.openings]
     lintels = [opening.lintel_box for opening in wall.openings]
     blocks = []
@@ -89,7 +89,7 @@ def _plain_blocks(wall: Wall, boxes: list[np.ndarray]) -> list[Block]:
 
 
 def _course(wall: Wall, k: int) -> np.ndarray:
-    """Boxes [left, bottom, right, top] of course k (from 0), (n, 4), from left to right."""
+    """Return the boxes [left, bottom, right, top] of course k (from 0), (n, 4), from left to right."""
     length = wall.course_lengths[k] if wall.course_lengths else wall.block[0]
     shift = wall.offset if wall.offset is not None else (0.0 if wall.bond == "stack" else length / 2.0)
     if k % 2 == (0 if wall.first == "full" else 1):
@@ -108,7 +108,7 @@ def _course(wall: Wall, k: int) -> np.ndarray:
 
 
 def _cut(boxes: np.ndarray, hole: tuple[float, float, float, float], small: float) -> np.ndarray:
-    """The boxes (n, 4) less the hole: pieces left and right at full height, others below and above it."""
+    """Subtract a hole from boxes (n, 4): pieces left and right at full height, others below and above it."""
     left, bottom, right, top = hole
     hit = (boxes[:, 0] < right - small) & (boxes[:, 2] > left + small)
     hit &= (boxes[:, 1] < top - small) & (boxes[:, 3] > bottom + small)
@@ -131,6 +131,6 @@ def _cut(boxes: np.ndarray, hole: tuple[float, float, float, float], small: floa
 
 
 def _corners(boxes: np.ndarray) -> np.ndarray:
-    """Corners of boxes (n, 4), counter-clockwise, (n, 4, 2)."""
+    """Return the corners of boxes (n, 4), counter-clockwise, (n, 4, 2)."""
     x0, y0, x1, y1 = boxes.T
     return np.stack([x0, y0, x1, y0, x1, y1, x0, y1], axis=1).reshape(-1, 4, 2)

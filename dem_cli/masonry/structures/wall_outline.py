@@ -28,13 +28,13 @@ Layers = Annotated[tuple[str, ...], Field(min_length=1)]
 
 
 class DrawnOpening(NamedTuple):
-    """A hole of an outline."""
+    """Hole of an outline."""
 
     said: str  # what it is called in messages
     shape: np.ndarray  # counter-clockwise [m], (n, 2)
 
     def spanned(self, lintel: Lintel | None) -> Opening | None:
-        """As an opening with a lintel; None: it is not an upright rectangle."""
+        """Convert the hole to an opening with a lintel; None: it is not an upright rectangle."""
         box = polygon.upright_box(self.shape)
         if box is None:
             return None
@@ -43,7 +43,7 @@ class DrawnOpening(NamedTuple):
 
 
 class DrawnElevation(NamedTuple):
-    """The elevation of a wall as it is drawn; the lower left corner of the box around it is the origin.
+    """Elevation of a wall as drawn; the lower left corner of its bounding box is the origin.
 
     outline   corners of the masonry, doors and windows included, counter-clockwise [m], (n, 2)
     openings  in the order of the drawing, then doors around which the outline goes
@@ -56,13 +56,13 @@ class DrawnElevation(NamedTuple):
 
     @property
     def size(self) -> tuple[float, float]:
-        """Length and height of the box around it [m]."""
+        """Length and height of the bounding box [m]."""
         length, height = self.outline.max(axis=0).tolist()
         return (length, height)
 
     @property
     def eaves(self) -> float:
-        """The height up to which both of its ends are upright, from the foot [m]; 0: one is not."""
+        """Height up to which both ends are upright, from the foot [m]; 0: one is not."""
         after = np.roll(self.outline, -1, axis=0)
         tops = []
         for x in (0.0, self.size[0]):
@@ -73,12 +73,12 @@ class DrawnElevation(NamedTuple):
 
     @property
     def beside_hull(self) -> list[np.ndarray]:
-        """Convex pieces of the convex hull in which there is no masonry, openings apart."""
+        """Convex pieces of the convex hull without masonry, openings apart."""
         return pockets.hull_pockets(self.outline)
 
     @property
     def beside_box(self) -> list[np.ndarray]:
-        """Convex pieces of the box around it in which there is no masonry, openings apart."""
+        """Convex pieces of the bounding box without masonry, openings apart."""
         return [*self.beside_hull, *pockets.box_pockets(pockets.hull(self.outline))]
 
 
@@ -145,12 +145,12 @@ class WallOutline(CaseModel):
 
     @property
     def opening_layers(self) -> tuple[str, ...]:
-        """The layers or groups of openings; none: those on the layer of the outline are all."""
+        """Layers or groups of openings; none: all are on the layer of the outline."""
         return (self.openings,) if isinstance(self.openings, str) else self.openings or ()
 
     @cached_property
     def drawn(self) -> DrawnElevation:
-        """The elevation. Raises KeyProblem."""
+        """Read the elevation. Raises KeyProblem."""
         if self.file is None:
             given = [("the outline", self.points or ()), *((f"holes.{i}", hole) for i, hole in enumerate(self.holes))]
             return _elevation([(said, np.array(loop, float)) for said, loop in given], ("points", "holes"))
@@ -171,23 +171,23 @@ class WallOutline(CaseModel):
 
     @cached_property
     def spanned(self) -> tuple[Opening, ...]:
-        """Its upright rectangular openings, with a lintel where one is given."""
+        """Upright rectangular openings, with a lintel where one is given."""
         return tuple(found for each in self.drawn.openings if (found := each.spanned(self.lintel)))
 
     @cached_property
     def cut(self) -> tuple[np.ndarray, ...]:
-        """Convex pieces of its other openings."""
+        """Convex pieces of the other openings."""
         other = [each for each in self.drawn.openings if each.spanned(None) is None]
         return tuple(piece for each in other for piece in pockets.convex_pieces(each.shape))
 
     @property
     def unspanned(self) -> list[str]:
-        """Names of openings over which there is neither lintel nor arch."""
+        """Names of openings with neither lintel nor arch."""
         return [each.said for each in self.drawn.openings if self.lintel is None or each.spanned(None) is None]
 
 
 class Outlined(StructureBase):
-    """What walls accept that fill an outline."""
+    """Keys of walls that fill an outline."""
 
     outline: WallOutline | None = Field(
         None,
@@ -196,11 +196,11 @@ class Outlined(StructureBase):
     )
 
     def with_drawn(self, openings: Sequence[Opening]) -> tuple[Opening, ...]:
-        """The openings of a case and, after them, those drawn that are rectangular."""
+        """Return the openings of a case followed by the rectangular ones of the drawing."""
         return (*openings, *self.outline.spanned) if self.outline else tuple(openings)
 
     def check_outlined(self, openings: Sequence[Opening], instead: Sequence[str]) -> None:
-        """Raises KeyProblem: keys that an outline stands for (`instead`), openings that reach out of it."""
+        """Raise KeyProblem: keys that an outline replaces (`instead`), openings that reach out of it."""
         if self.outline is None:
             return
         for key in instead:
@@ -211,7 +211,7 @@ class Outlined(StructureBase):
                 raise KeyProblem("reaches out of the outline, or into an opening that is drawn", "openings", i)
 
     def leaves_outline(self, shapes: Sequence[np.ndarray]) -> bool:
-        """Whether convex shapes reach out of the outline, or into an opening that is drawn."""
+        """Test whether convex shapes reach out of the outline, or into an opening of the drawing."""
         if self.outline is None:
             return False
         taken = [*self.outline.drawn.beside_box, *self.outline.cut]
@@ -220,12 +220,12 @@ class Outlined(StructureBase):
 
 
 def hollows(outline: WallOutline | None) -> list[Void]:
-    """What an outline leaves out of the box around it, in convex pieces, rectangular openings apart."""
+    """Return the voids between an outline and its bounding box, in convex pieces, rectangular openings apart."""
     return [plain_void(shape) for shape in (*outline.cut, *outline.drawn.beside_box)] if outline else []
 
 
 def _check_file(path: Path) -> None:
-    """Raises KeyProblem where there is no such drawing."""
+    """Raise KeyProblem where a path is no drawing."""
     found = format_of(path)
     if found is None or not found.flat:
         message = f"'{path.suffix or path.name}' is not a drawing; the file ends in one of {', '.join(DRAWN)}"
@@ -235,7 +235,7 @@ def _check_file(path: Path) -> None:
 
 
 def _wall_of(outline: WallOutline, contents: Contents) -> tuple[FileBody, list[FileBody]]:
-    """The outline of the wall and those of its openings. Raises KeyProblem."""
+    """Find the outline of the wall and those of its openings. Raises KeyProblem."""
     inner = [body for body in contents.bodies if body.layer in outline.opening_layers]
     for layer in outline.opening_layers:
         if all(body.layer != layer for body in inner):
@@ -261,7 +261,7 @@ def _called(body: FileBody) -> str:
 
 
 def _elevation(loops: Sequence[tuple[str, np.ndarray]], keys: tuple[str, str]) -> DrawnElevation:
-    """The elevation with that outline, the first, and those openings. Raises KeyProblem, with the key of either."""
+    """Create the elevation from its outline, the first loop, and its openings. Raises KeyProblem with the key."""
     from dem_cli.masonry.imports.solids import closed_outline
 
     count = sum(len(loop) for _, loop in loops)
@@ -291,14 +291,14 @@ def _elevation(loops: Sequence[tuple[str, np.ndarray]], keys: tuple[str, str]) -
 
 
 def _onto(values: np.ndarray, levels: np.ndarray, gap: float) -> np.ndarray:
-    """Coordinates with those within `gap` of one of the levels, the lowest such one, put onto it."""
+    """Snap coordinates within `gap` of a level to it, the lowest such one."""
     places = np.minimum(np.searchsorted(levels, values - gap), len(levels) - 1)
     near: np.ndarray = levels[places]
     return np.where(np.abs(near - values) <= gap, near, values)
 
 
 def _without_doors(outline: np.ndarray) -> tuple[np.ndarray, list[DrawnOpening]]:
-    """The outline with a straight foot where it goes around doors, and these."""
+    """Straighten the foot of an outline that goes around doors; returns it and the doors."""
     on = np.flatnonzero(outline[:, 1] == 0.0).tolist()
     doors: list[DrawnOpening] = []
     dropped: set[int] = set()
@@ -313,7 +313,7 @@ def _without_doors(outline: np.ndarray) -> tuple[np.ndarray, list[DrawnOpening]]
 
 
 def _check(outline: WallOutline) -> None:
-    """Raises KeyProblem where openings reach out of the outline or into each other, or lintels have no room."""
+    """Raise KeyProblem where openings reach out of the outline or into each other, or lintels have no room."""
     key = "holes" if outline.file is None else "openings"
     drawn, (length, height) = outline.drawn, outline.drawn.size
     least, gap = SAME * length * height, SAME * polygon.size(drawn.outline)

@@ -1,1 +1,1 @@
-"""Results on disk: HDF5, VTKHDF, summary.json, CSV; written as a run goes, read back."""
+"""Write and read results on disk: HDF5, VTKHDF, summary.json, CSV, written during the run."""

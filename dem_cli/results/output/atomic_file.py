@@ -1,4 +1,4 @@
-"""Atomic file writes: a file, or all files of a folder, are there whole, or as they were."""
+"""Atomic file writes: a file, or all files of a folder, appear complete or stay as they were."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PART = ".part-"
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """A path beside `path`, of the same suffix, to write to; it takes the name once that went well.
+    """Write to a temporary path of the same suffix, which replaces `path` on success.
 
     Raises OutputError where the disk does not take it, and UsageError where the name is that of no file.
     """
@@ -35,14 +35,14 @@ def whole(path: Path) -> Iterator[Path]:
 
 
 def require_file(path: Path) -> None:
-    """Raises UsageError where a device, a pipe or a folder has the name of a file to write: it would be replaced."""
+    """Raise UsageError where a device, a pipe or a folder has the name of a file to write: it would be replaced."""
     if path.exists() and not path.is_file():
         raise UsageError(f"cannot write {path}: it is {what_else(path)}; give the name of a file")
 
 
 @contextmanager
 def whole_folder(folder: Path) -> Iterator[Path]:
-    """A folder to write files to; they appear in `folder` once all went well, else it is as it was, or not there.
+    """Write files to a temporary folder; they appear in `folder` only once all went well.
 
     Raises OutputError where the disk does not take them.
     """
@@ -63,6 +63,6 @@ def whole_folder(folder: Path) -> Iterator[Path]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """A text file. Raises OutputError."""
+    """Write a text file atomically. Raises OutputError."""
     with whole(path) as part:
         part.write_text(text, encoding="utf-8", newline="\n")

@@ -1,4 +1,4 @@
-"""Mean stress of blocks from the forces at their contact points, rigid or not, and its principal values.
+"""Mean stress of blocks from the forces at their contact points, and its principal values.
 
 In equilibrium V σ = Σ f ⊗ x over all forces on the surface of a block (Love 1927); weight acts evenly and adds nothing
 about the centroid. Loads at points of a block are not among contact forces: a block that has any lacks their share.
@@ -15,7 +15,7 @@ from dem_cli.core.records.frames import Frame, FrameStack
 
 
 def mean_stresses(model: Model, frame: Frame | FrameStack) -> np.ndarray:
-    """Along the axes of the world, tension positive, symmetric [Pa], (n_blocks, d, d); 0 of fixed blocks.
+    """Compute the mean stress of each block in global axes, tension positive [Pa], (n_blocks, d, d); 0 of fixed blocks.
 
     Of a stack of frames those of all of them, (n_frames · n_blocks, d, d).
     """
@@ -33,5 +33,5 @@ def mean_stresses(model: Model, frame: Frame | FrameStack) -> np.ndarray:
 
 
 def principal_values(stresses: np.ndarray) -> np.ndarray:
-    """Principal values of symmetric tensors (n, d, d), the largest tension first, (n, d)."""
+    """Compute principal values of symmetric tensors (n, d, d), the largest tension first, (n, d)."""
     return diagonalised(stresses)[0][:, ::-1]

@@ -1,4 +1,4 @@
-"""Order of the case: results have blocks as the case file has them, structure by structure, then those drawn by hand.
+"""Order of blocks in results: as in the case file, structure by structure, then those drawn by hand.
 
 Solvers number blocks from the lowest up, so that neighbours lie close together in memory. Nobody else need know.
 """
@@ -12,7 +12,7 @@ from dem_cli.core.records.frames import FRAME_ARRAYS, FrameStack, JointPlaces, L
 
 
 class CaseOrder:
-    """From the numbers that blocks have in a solver to those that they have in the case, where these differ."""
+    """Permutation of blocks from solver order to case order."""
 
     def __init__(self, model: Model):
         self.order = np.argsort(model.ranks, kind="stable")  # number in the solver of each block of the case
@@ -20,15 +20,15 @@ class CaseOrder:
         self.places = np.argsort(self.order, kind="stable")
 
     def model(self, model: Model) -> Model:
-        """The structure, without ties and bars where blocks are renumbered."""
+        """Reorder the structure, without ties and bars where blocks are renumbered."""
         return model if self.same else model.only(self.order.tolist(), model.fixed[self.order])
 
     def joints(self, places: JointPlaces) -> JointPlaces:
-        """Joints as they were drawn, in their order."""
+        """Renumber the blocks of joints as drawn; the order of joints stays."""
         return places if self.same else places._replace(blocks=self.places[places.blocks])
 
     def links(self, record: LinkRecord) -> LinkRecord:
-        """Ties and bars."""
+        """Renumber the blocks of ties and bars."""
         return record if self.same else record._replace(places=self._of_links(record.places))
 
     def _of_links(self, places: LinkPlaces) -> LinkPlaces:
@@ -36,7 +36,7 @@ class CaseOrder:
         return places._replace(blocks=np.where(held, self.places[places.blocks], places.blocks))
 
     def stack(self, stack: FrameStack) -> FrameStack:
-        """Frames: rows of blocks, and the blocks of contact points and links."""
+        """Reorder frames: rows of blocks, and the blocks of contact points and links."""
         if self.same:
             return stack
         n, n_blocks = len(stack.frames), len(self.order)

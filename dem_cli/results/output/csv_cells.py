@@ -1,4 +1,4 @@
-"""Cells of CSV files: a name of the user's never becomes a formula of a spreadsheet, nor breaks a row.
+"""Cells of CSV files that never become a formula of a spreadsheet, nor break a row.
 
 Names stay allowed as they are ("+20 %" is a fair label of a run, and a valid case stays valid): only the table is
 careful. Line breaks and other control characters become blanks. Text that begins with =, +, − or @ and is no number
@@ -15,7 +15,7 @@ _CONTROL = re.compile(r"[\x00-\x1f\x7f\x85\u2028\u2029]+")
 
 
 def cell(value: Any) -> Any:
-    """What is written for a value; all but text stays as it is."""
+    """Convert a value to a safe CSV cell; all but text stays as it is."""
     if not isinstance(value, str):
         return value
     line = _CONTROL.sub(" ", value).strip(" ") if _CONTROL.search(value) else value
@@ -23,7 +23,7 @@ def cell(value: Any) -> Any:
 
 
 def text_of(written: str) -> str:
-    """The text that `cell` was given, but for line breaks."""
+    """Recover the text of a cell written by `cell`, except for line breaks."""
     return written[1:] if written.startswith(tuple(f"'{sign}" for sign in FORMULA)) else written
 
 

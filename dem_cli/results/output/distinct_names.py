@@ -1,4 +1,4 @@
-"""Distinct names of monitors and records in tables."""
+"""Unique names of monitors and records in tables."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 
 def distinct(names: Iterable[str]) -> list[str]:
-    """The same names, with a number where one comes again."""
+    """Make names unique by a number where one is repeated."""
     found: list[str] = []
     for name in names:
         count = 1 + sum(other == name or other.startswith(f"{name} #") for other in found)

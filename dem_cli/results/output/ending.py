@@ -1,4 +1,4 @@
-"""Ending of a run in words: collapsed, stood, still moving, a load that was not found; for answers, titles, reports."""
+"""Describe how a run ended: collapsed, stood, still moving, a load that was not found; for titles and reports."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _KNOWN = {STOOD: STOOD, ROCKS: f"stood, {ROCKS}", MOVES: MOVES_WORDS}
 
 
 def ending_words(summary: Mapping[str, Any], digits: int = 4) -> str:
-    """How it ended and when, and what contradicts it; empty where a summary does not say.
+    """Describe the end of a run, its time, and contradictions; empty where a summary has none.
 
     digits: of the time of a collapse.
     """
@@ -21,7 +21,7 @@ def ending_words(summary: Mapping[str, Any], digits: int = 4) -> str:
 
 
 def _how(summary: Mapping[str, Any], digits: int) -> str:
-    """How it ended, as the run itself says it."""
+    """Describe the end of a run as recorded in its summary."""
     fell = summary.get("collapsed")
     how = summary.get("ending") or (None if fell is None else COLLAPSED if fell else STOOD)
     if how != COLLAPSED:
@@ -33,12 +33,12 @@ def _how(summary: Mapping[str, Any], digits: int) -> str:
 
 
 def last_words(summary: Mapping[str, Any]) -> str:
-    """What the last values of monitors are: those of a structure at rest, or passing."""
+    """Describe the time of the last monitor values: at rest, or still moving."""
     return "in the end" if summary.get("at_rest", True) else "at the end, still moving"
 
 
 def median_words(summary: Mapping[str, Any], digits: int = 4) -> str:
-    """Where half of the records collapse, as far as that is known; empty where it is not."""
+    """Format the median collapse intensity, or its bounds; empty where it is not known."""
     if summary.get("median") is not None:
         return f"{summary['median']:.{digits}g}"
     between = summary.get("median_between")
@@ -51,7 +51,7 @@ def median_words(summary: Mapping[str, Any], digits: int = 4) -> str:
 
 
 def unfound_load(summary: Mapping[str, Any]) -> str:
-    """What a search for the failure load that ended without one knows; empty where there is one, or no search."""
+    """Describe the result of a search that ended without a failure load; empty where there is one, or no search."""
     bracket = summary.get("failure_load_bracket")
     if summary.get("status") != "not converged" or summary.get("failure_load") is not None or not bracket:
         return ""

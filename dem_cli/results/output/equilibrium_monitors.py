@@ -1,4 +1,4 @@
-"""Monitors of a static analysis in its last equilibrium: before failure, or where the analysis ended."""
+"""Monitor values of a static analysis in its last equilibrium: before failure, or at the end."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ AT_REST = ("gravity", "loading", "settlement")  # stages of rows in equilibrium
 
 
 class EquilibriumMonitors:
-    """Monitors of a run, remembered equilibrium by equilibrium."""
+    """Monitor values of a run, recorded at each equilibrium."""
 
     def __init__(self, names: Sequence[str], quantities: Sequence[str]):
         self.names, self.units = tuple(names), [MONITOR_UNITS[quantity] for quantity in quantities]
         self._rows: list[HistoryRow] = []
 
     def row(self, row: HistoryRow) -> None:
-        """Keep the row where it is one of an equilibrium."""
+        """Record the row of an equilibrium; others are ignored."""
         if self.names and row.stage in AT_REST:
             self._rows.append(row)
 
     def values(self, found: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-        """Value, load multiplier and unit of each monitor, by name; nothing where nothing was at rest.
+        """Return value, load multiplier and unit of each monitor, by name; empty without an equilibrium.
 
         found: the solver's summary. Before a failure load that is the value at the highest load that was held. With
         the geometry of the start a mechanism rests wherever it is left: there it is the smallest of all at this load,
@@ -45,5 +45,5 @@ class EquilibriumMonitors:
 
 
 def _size(held: tuple[float, float]) -> float:
-    """How large the value of a monitor is, whatever its sign and load."""
+    """Return the absolute value of a monitor."""
     return abs(held[0])

@@ -1,4 +1,4 @@
-"""The output directory of a run: results appear in it whole or not at all.
+"""Output directory of a run: results appear in it complete or not at all.
 
 Files are written into a hidden folder beside the final one and renamed into place. Where that cannot be
 (a mount point, the current folder, an unwritable parent, `--force` among other files) the hidden folder
@@ -80,7 +80,7 @@ _REASONS = {
 
 
 def write_error(error: Exception, path: Path) -> DemError:
-    """One clear message for a failed write; HDF5 hides the reason in its text."""
+    """Convert a failed write to one clear error; HDF5 hides the reason in its text."""
     number = getattr(error, "errno", None)
     hidden = re.search(r"errno = (\d+)", str(error))
     if number is None and hidden:
@@ -100,7 +100,7 @@ def _own_summary(folder: Path) -> dict[str, object] | None:
 
 
 def require_folder(folder: Path) -> None:
-    """Raises UsageError where there is no folder of this name, with what makes one."""
+    """Raise UsageError where there is no folder of this name, with the command that makes one."""
     if folder.is_dir():
         return
     if not folder.exists():
@@ -112,18 +112,18 @@ def require_folder(folder: Path) -> None:
 
 
 def is_ours(folder: Path) -> bool:
-    """Whether `folder` holds the results of a run, by its summary.json."""
+    """Test whether `folder` contains the results of a run, by its summary.json."""
     return _own_summary(folder) is not None
 
 
 def is_complete(folder: Path) -> bool:
-    """Whether `folder` holds results of a run that was not interrupted."""
+    """Test whether `folder` contains results of a run that was not interrupted."""
     summary = _own_summary(folder)
     return summary is not None and summary["status"] != "interrupted"
 
 
 def foreign_names(folder: Path) -> list[str]:
-    """What `folder` holds that `dem` did not write; leftovers of our own are not counted."""
+    """List the files in `folder` that `dem` did not write; its own leftovers are not counted."""
     ours = re.compile(rf"\..*(({_NEW}|{_OLD})-|({'|'.join(map(re.escape, (JOURNAL, CHECKPOINTS, CLAIM)))})$)")
     names = sorted(path.name for path in folder.iterdir() if not ours.match(path.name))
     names = [name for name in names if not (name.endswith(INTERRUPTED_SUFFIX) and is_ours(folder / name))]
@@ -168,7 +168,7 @@ class OutputFolder:
         self._lock = _lock(self.path / _LOCK)
 
     def _claim_place(self) -> Path:
-        """The lock: beside the folder; inside where whoever shares the folder may not share what is beside it."""
+        """Choose the place of the lock: beside the folder, or inside where its parent is not writable."""
         alone = self.final.is_dir() and (os.path.ismount(self.final) or not os.access(self.final.parent, os.W_OK))
         return (self.final if alone else self.final.parent) / f".{self.final.name}{CLAIM}"
 
@@ -198,7 +198,7 @@ class OutputFolder:
             self._made.append(folder)
 
     def _recover(self, base: Path) -> None:
-        """Remove what killed runs left behind; give back earlier results that one had put aside."""
+        """Remove the leftovers of killed runs; restores earlier results that one had put aside."""
         if not base.is_dir():
             return
         stem = f".{self.final.name}."
@@ -212,7 +212,7 @@ class OutputFolder:
                     (base / name).rename(self.final)
 
     def commit(self, name: str | None = None) -> Path:
-        """Put the folder under its final name, or under the sibling `name`; earlier results go only now."""
+        """Move the folder to its final name, or to the sibling `name`; earlier results are removed only now."""
         try:
             self._unlock()
             if name is not None and name != self.final.name:
@@ -234,7 +234,7 @@ class OutputFolder:
         return target
 
     def _move_files(self, target: Path) -> None:
-        """In a folder that stays: the old summary goes first, the new one comes last: none ever lies."""
+        """Replace files in a folder that stays: the old summary is removed first, the new one added last."""
         (target / SUMMARY).unlink(missing_ok=True)
         for name in sorted(OWN_NAMES - {SUMMARY}):
             if (self.path / name).exists():
@@ -273,7 +273,7 @@ class OutputFolder:
 
 
 def _replace_folder(new: Path, final: Path, aside: Path) -> None:
-    """Two renames; a kill between them leaves the old results in `aside`, which the next run gives back."""
+    """Replace a folder by two renames; after a kill between them the next run restores the old results."""
     had_old = final.exists()
     if had_old:
         final.rename(aside)
@@ -301,7 +301,7 @@ def _lock(path: Path) -> int:
 
 
 def _try_flock(handle: int) -> bool:
-    """Take the lock without waiting; where there are no locks nothing ever counts as abandoned."""
+    """Take a file lock without waiting; where there are no locks nothing ever counts as abandoned."""
     try:
         import fcntl
 
@@ -312,7 +312,7 @@ def _try_flock(handle: int) -> bool:
 
 
 def claimed(path: Path) -> int | None:
-    """The lock file of that name, made and locked; None where another run has it. Its owner removes it at last."""
+    """Create and lock a lock file; None where another run has it. Its owner removes it at last."""
     while True:
         file = os.open(path, os.O_CREAT | os.O_RDWR, 0o644)
         if not locked(file):
@@ -325,7 +325,7 @@ def claimed(path: Path) -> int | None:
 
 
 def abandoned(folder: Path) -> bool:
-    """Whether nobody writes to this hidden folder any more."""
+    """Test whether no process writes to this hidden folder any more."""
     try:
         handle = os.open(folder / _LOCK, os.O_RDWR)
     except FileNotFoundError:  # just made, or just about to be renamed, unless it is old
@@ -338,7 +338,7 @@ def abandoned(folder: Path) -> bool:
 
 
 def locked(file: int, shared: bool = False) -> bool:
-    """Takes the lock, which the system frees when its owner dies; False where somebody has it.
+    """Take a file lock, which the system frees when its owner dies; False where another process has it.
 
     shared: others who share it may have it as well.
     """

@@ -1,4 +1,4 @@
-"""Datasets of an HDF5 group that grow row by row.
+"""Growing datasets of an HDF5 group, extended row by row.
 
 Handles are kept: opening one costs more than a row. Rows wait for `write_out`: HDF5 takes as long for one as for many.
 """
@@ -20,17 +20,17 @@ _FEWEST_ROWS = 64
 
 
 class GrowingDataset:
-    """HDF5 dataset that grows row by row; empty, when it is handed in."""
+    """Growing HDF5 dataset, extended row by row; empty at first."""
 
     def __init__(self, id: h5d.DatasetID, shape: tuple[int, ...], dtype: np.dtype):
-        """shape: of a row."""
+        """Open an empty dataset with rows of a shape."""
         self.id, self.shape, self.dtype, self.length = id, shape, dtype, 0
         self._waiting: list[np.ndarray] = []
         self._written = 0
         self._piece: np.ndarray | None = None  # of the file, that is being filled: as many rows as are stored together
 
     def append(self, rows: np.ndarray) -> int:
-        """Add rows; returns the length that there was before."""
+        """Append rows; returns the previous length."""
         start = self.length
         self.length = start + len(rows)
         if len(rows):
@@ -38,7 +38,7 @@ class GrowingDataset:
         return start
 
     def write_out(self) -> None:
-        """What waits becomes part of the file."""
+        """Write the buffered rows to the file."""
         if self._waiting:
             rows = self._waiting[0] if len(self._waiting) == 1 else np.concatenate(self._waiting)
             self._waiting.clear()
@@ -52,7 +52,7 @@ class GrowingDataset:
             self._note(rows)
 
     def _fits(self, rows: np.ndarray) -> bool:
-        """Whether rows went into the piece that is being filled, which is then written as it lies: in half the time."""
+        """Test whether rows fit the current chunk, and write it directly if so, in half the time."""
         piece, n = self._piece, len(rows)
         if piece is None or not rows.size or rows.dtype != self.id.dtype:
             return False
@@ -64,7 +64,7 @@ class GrowingDataset:
         return True
 
     def _note(self, rows: np.ndarray) -> None:
-        """The piece after rows were written."""
+        """Update the current chunk after rows were written."""
         if self._piece is None:
             self._piece = np.zeros(self.id.get_create_plist().get_chunk(), self.dtype)
         self._written, size = self.length, len(self._piece)
@@ -76,7 +76,7 @@ class GrowingDataset:
 
 
 class GrowingGroup:
-    """The growing datasets of one group, made when they first get rows.
+    """Growing datasets of one group, created with their first rows.
 
     declared     what each holds; one that is not there is written without attributes (bookkeeping of VTKHDF)
     fewest_rows  that space is made for at once
@@ -94,7 +94,7 @@ class GrowingGroup:
         self._columns: dict[str, GrowingDataset] = {}
 
     def append(self, name: str, rows: np.ndarray) -> int:
-        """Add rows to the dataset `name` (a path inside the group); returns the length that it had."""
+        """Append rows to the dataset `name` (a path inside the group); returns its previous length."""
         rows = np.asarray(rows)
         column = self._columns.get(name)
         if column is None:
@@ -102,7 +102,7 @@ class GrowingGroup:
         return column.append(rows)
 
     def _first(self, name: str, rows: np.ndarray) -> h5d.DatasetID:
-        """The dataset for the first rows of a name: the one that is there, unless its pieces are made for fewer."""
+        """Return the dataset for the first rows of a name, recreated where its chunks are too small."""
         if name in self.made:
             if len(rows) <= self.fewest_rows:
                 return h5d.open(self.group.id, name.encode())
@@ -110,9 +110,7 @@ class GrowingGroup:
         return self.make(name, rows.shape[1:], rows.dtype, len(rows))
 
     def make(self, name: str, shape: tuple[int, ...], dtype: np.dtype, n_rows: int = 0) -> h5d.DatasetID:
-        """A new dataset without rows. shape: of a row. n_rows: space is made for so many at once, as far as that is
-        little.
-        """
+        """Create a dataset without rows. shape: of a row. n_rows: rows to reserve at once, within a limit."""
         width = tuple(max(1, size) for size in shape)
         row_bytes = dtype.itemsize * math.prod(width)
         chunk = max(1, min(max(self.fewest_rows, n_rows), _CHUNK_BYTES // row_bytes))
@@ -120,12 +118,12 @@ class GrowingGroup:
         return described_dataset(self.group, name, (0, *shape), dtype, said, (chunk, *width)).id
 
     def write_out(self) -> None:
-        """What waits becomes part of the file."""
+        """Write the buffered rows to the file."""
         for column in self._columns.values():
             column.write_out()
 
     def drop_unused(self) -> None:
-        """No dataset stays that never got rows, and no group without any."""
+        """Delete datasets that never got rows, and groups that are empty."""
         for name in self.made:
             if name not in self._columns:
                 del self.group[name]
@@ -134,5 +132,5 @@ class GrowingGroup:
                     del self.group[parent]
 
     def link(self, name: str, target: str) -> None:
-        """Let `name` be another name of the dataset `target`."""
+        """Create a hard link `name` to the dataset `target`."""
         self.group[name] = self.group[target]

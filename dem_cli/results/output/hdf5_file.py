@@ -19,7 +19,7 @@ class TransactionalFile(io.RawIOBase):
     """Transactional file, whose writes reach the disk at `commit()`; the first one that fails is kept in `error`."""
 
     def __init__(self, path: Path, begun: bytes = b""):
-        """begun: what is in it already, and not on disk."""
+        """Open the file. begun: its initial content, not yet on disk."""
         super().__init__()
         self.error: OSError | None = None
         self._disk = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC | getattr(os, "O_BINARY", 0), 0o666)
@@ -28,7 +28,7 @@ class TransactionalFile(io.RawIOBase):
         self._place = self._on_disk = 0
 
     def commit(self) -> None:
-        """Write what was held back; nothing more once a write has failed.
+        """Write the buffered pieces to disk; nothing more once a write has failed.
 
         New space and what belongs there first, then the tables that point to it, the head of the file
         last, so that a kill in between almost always leaves the file as it was.
@@ -45,7 +45,7 @@ class TransactionalFile(io.RawIOBase):
             self.error = error
 
     def write(self, data: Any) -> int:
-        """Hold a piece back."""
+        """Buffer a piece to be written."""
         if self.error is None:
             self._held.append((self._place, bytes(data)))
         count = memoryview(data).nbytes
@@ -54,7 +54,7 @@ class TransactionalFile(io.RawIOBase):
         return count
 
     def readinto(self, buffer: Any) -> int:
-        """What was written last at this place, held back or not."""
+        """Read the last written data at this place, buffered or not."""
         view = memoryview(buffer).cast("B")
         start, stop = self._place, self._place + len(view)
         on_disk = os.pread(self._disk, len(view), start)
@@ -68,22 +68,22 @@ class TransactionalFile(io.RawIOBase):
         return len(view)
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """Go to a place; returns it."""
+        """Move to a position; returns it."""
         base = {os.SEEK_SET: 0, os.SEEK_CUR: self._place, os.SEEK_END: self._size}[whence]
         self._place = base + offset
         return self._place
 
     def tell(self) -> int:
-        """The place."""
+        """Return the current position."""
         return self._place
 
     def truncate(self, size: int | None = None) -> int:
-        """End at a size, by default at the place; returns it."""
+        """Truncate to a size, by default at the current position; returns it."""
         self._size = self._place if size is None else size
         return self._size
 
     def readable(self) -> bool:
-        """Yes, as writable and seekable."""
+        """Tell that the file is readable, as it is writable and seekable."""
         return True
 
     writable = seekable = readable
@@ -103,15 +103,15 @@ def _write_at(disk: int, place: int, piece: bytes) -> None:
 
 
 class Hdf5File:
-    """An HDF5 file open for writing; on disk it is always as the last `flush()` left it."""
+    """HDF5 file open for writing; on disk it is always as the last `flush()` left it."""
 
     def __init__(self, path: Path, begun: bytes = b""):
-        """begun: the bytes of a file that this one goes on from."""
+        """Open the file. begun: the bytes of a file that this one continues."""
         self._file = TransactionalFile(path, begun)
         self.hdf = h5py.File(self._file, "r+" if begun else "w")
 
     def flush(self) -> None:
-        """Everything written so far is on disk when this returns, or it raises OSError."""
+        """Write everything to disk before returning, or raise OSError."""
         self.hdf.flush()
         self._commit()
 

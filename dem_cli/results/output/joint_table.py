@@ -1,4 +1,4 @@
-"""joints.csv: every joint as it was drawn, with its opening, crack width, slip and stress in one frame."""
+"""Write joints.csv: every joint as drawn, with its opening, crack width, slip and stress in one frame."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PLACES = ("steepness [deg]", "length [m]", "area [m2]")
 
 
 def joints_of(results: Results) -> JointHistory:
-    """The joints of a run. Raises UsageError where it kept none."""
+    """Return the joints of a run. Raises UsageError where it kept none."""
     if results.joints is None:
         raise UsageError(
             "the results hold no joints: the run kept no frames (output.frames = 0), or an earlier version made it"
@@ -29,13 +29,13 @@ def joints_of(results: Results) -> JointHistory:
 
 
 def steepness(joints: JointHistory) -> np.ndarray:
-    """Angle of each joint to the horizontal [rad], (n,): 0 of a bed joint, π/2 of a head joint."""
+    """Compute the angle of each joint to the horizontal [rad], (n,): 0 of a bed joint, π/2 of a head joint."""
     normals = np.abs(joints.places.normals)
     return functions.arctan2(np.hypot.reduce(normals[:, :-1], axis=1), normals[:, -1])
 
 
 def write_joints(results: Results, frame: int, path: Path) -> Path:
-    """One line per joint at a frame, by its number, with units in the first line; every digit kept. Raises DemError."""
+    """Write one line per joint at a frame, by its number, with units in the first line, exactly. Raises DemError."""
     joints = joints_of(results)
     places, states = joints.places, joints.at(frame)
     middle = places.middles().T

@@ -1,7 +1,7 @@
 """Layout of results.h5: meaning, units, axes, columns and kind of every dataset and attribute.
 
-Whoever writes a dataset takes its attributes from here and can write no other; whoever reads one is told where it is
-not what is said here (output/integrity/); docs/results.md is made of the same declarations (scripts/docs --write).
+Writers of datasets take their attributes from here and can write no others; readers check datasets against them
+(output/integrity/); docs/results.md is generated from the same declarations (scripts/docs --write).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ ONE_MORE = " + 1"  # ends the label of an axis that has one more than what it co
 
 
 class Described(NamedTuple):
-    """What a dataset holds: attributes `meaning`, `units` and `columns`, and the labels of its axes."""
+    """Description of a dataset: attributes `meaning`, `units` and `columns`, and the labels of its axes."""
 
     meaning: str
     units: str | tuple[str, ...] = PURE  # several: of each column
@@ -38,7 +38,7 @@ class Described(NamedTuple):
     optional: bool = False  # only where a case asks for it, or since some version
 
     def of(self, dimension: int) -> Described:
-        """What it holds in so many dimensions."""
+        """Return the description of the dataset in two or three dimensions."""
         if dimension != 3 or self.in_space is None:
             return self
         kept = {name: getattr(self, name) for name in ("kind", "counts", "least", "optional")}
@@ -46,7 +46,7 @@ class Described(NamedTuple):
 
 
 class Group(NamedTuple):
-    """What a group of results.h5 is, its datasets by name, and the meaning of its attributes."""
+    """Description of a group of results.h5: its datasets by name, and its attributes."""
 
     about: str
     datasets: Mapping[str, Described]
@@ -57,7 +57,7 @@ class Group(NamedTuple):
 
 
 def describe(dataset: h5py.Dataset, said: Described) -> None:
-    """Write what a dataset holds as its attributes."""
+    """Write the description of a dataset as its attributes."""
     columns = said.columns[: dataset.shape[-1]] if dataset.shape else said.columns  # modes: as many as there are
     named = {"meaning": said.meaning, "units": said.units, "columns": columns, "DIMENSION_LABELS": said.axes}
     for name, words in named.items():  # the last one is HDF5's own
@@ -66,7 +66,7 @@ def describe(dataset: h5py.Dataset, said: Described) -> None:
 
 
 def _say(dataset: h5py.Dataset, name: str, words: str | tuple[str, ...]) -> None:
-    """A new attribute, of text; in a third of the time that h5py's `attrs` takes, which looks for an old one first."""
+    """Write a text attribute, three times as fast as h5py's `attrs`, which looks for an old one first."""
     shape = () if isinstance(words, str) else (len(words),)
     attribute = h5a.create(dataset.id, name.encode(), _ON_DISK, h5s.create_simple(shape) if shape else _ONE)
     attribute.write(np.array(words, dtype=TEXT), mtype=_IN_MEMORY)
@@ -78,18 +78,18 @@ _MOVED, _MOVED_IN_SPACE = ("x", "y", "rotation"), (*_XYZ, "rotation x", "rotatio
 
 
 def _vector(meaning: str, units: str, axes: tuple[str, ...]) -> Described:
-    """Two components in the plane, three in space."""
+    """Describe a vector: two components in the plane, three in space."""
     return Described(meaning, units, axes, _XYZ[:2], Described(meaning, units, axes, _XYZ))
 
 
 def _generalised(meaning: str, linear: str, angular: str, axes: tuple[str, ...]) -> Described:
-    """What has a component for each way in which a block can move."""
+    """Describe a generalised vector with a component for each degree of freedom of a block."""
     space = Described(meaning, (linear,) * 3 + (angular,) * 3, axes, _MOVED_IN_SPACE)
     return Described(meaning, (linear, linear, angular), axes, _MOVED, space)
 
 
 def _of_stress(meaning: str, axes: tuple[str, ...] = ("frame", "block", "component")) -> Described:
-    """What has a component for each stress in a block."""
+    """Describe the stress components of blocks."""
     space = Described(meaning, "Pa", axes, ("xx", "yy", "zz", "yz", "zx", "xy"))
     return Described(meaning, "Pa", axes, ("xx", "yy", "xy"), space, optional=True)
 
@@ -98,7 +98,7 @@ _BENDING = tuple(f"bending {k}" for k in range(1, 7))
 
 
 def _of_modes(meaning: str, unit: str, axes: tuple[str, ...] = ("block", "mode")) -> Described:
-    """What has a component for each mode by which blocks deform (core/model/uniform_strain.py)."""
+    """Describe values with a component for each deformation mode of a block (core/model/uniform_strain.py)."""
     space = Described(meaning, unit, axes, ("even", "x - y", "x + y - 2 z", "yz", "zx", "xy"))
     return Described(meaning, unit, axes, ("even", "x - y", "xy", *_BENDING), space, optional=True)
 
@@ -452,11 +452,11 @@ GROUPS = {  # of results.h5
 
 
 def declared(table: Mapping[str, Described], dimension: int) -> dict[str, Described]:
-    """What the datasets of a group hold in so many dimensions."""
+    """Return the descriptions of the datasets of a group in two or three dimensions."""
     return {name: said.of(dimension) for name, said in table.items() if dimension == 3 or not said.spatial}
 
 
 def units_of(table: Mapping[str, Described]) -> dict[str, str]:
-    """Units of what has one, by name."""
+    """Return the units of the datasets that have one, by name."""
     units = {name: said.units for name, said in table.items()}
     return {name: unit for name, unit in units.items() if isinstance(unit, str) and unit not in (PURE, WORDS)}

@@ -1,4 +1,4 @@
-"""Provenance of a result: the versions that it was computed with. Nothing here names a machine, a person or a place."""
+"""Provenance of a result: the versions that computed it, without any machine, person or place."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ PACKAGES = ("numpy", "numba", "scipy", "clarabel", "h5py", "pydantic")
 
 
 def provenance() -> dict[str, str]:
-    """Versions by name; packages that are not installed are left out."""
+    """Return versions by package name; packages that are not installed are left out."""
     return dict(_versions())
 
 
 @cache
 def _versions() -> dict[str, str]:
-    """Looked up once in a process: it reads files."""
+    """Look up the versions once per process, since that reads files."""
     versions = {"dem": __version__, "python": platform.python_version(), "machine": platform.machine()}
     for name in PACKAGES:
         try:
@@ -31,7 +31,7 @@ def _versions() -> dict[str, str]:
 
 
 def _version_of(package: str) -> str:
-    """As `metadata.version`, which is loaded in 8 ms and reads what a package says of itself as an e-mail, 5 ms each.
+    """Return the version of a package, faster than `metadata.version`, which takes 8 ms to load and 5 ms per package.
 
     The folder that it says it in lies beside the package, and its name ends with the version.
     """
@@ -43,6 +43,6 @@ def _version_of(package: str) -> str:
 
 @cache
 def _described(folder: Path) -> list[tuple[str, str]]:
-    """Name and version of the packages that are installed in a folder."""
+    """List name and version of the packages that are installed in a folder."""
     found = (place.name.removesuffix(".dist-info").partition("-") for place in folder.glob("*.dist-info"))
     return [(name, version) for name, _, version in found]

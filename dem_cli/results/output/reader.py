@@ -1,4 +1,4 @@
-"""Reader of results: `read(folder)` gives back what a run left, or says what of it is missing or damaged."""
+"""Read results: `read(folder)` returns a run, or an error that names the missing or damaged part."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ from dem_cli.results.output.sweep_files import RUNS
 
 Stored: TypeAlias = "np.ndarray | LaterArray"  # an array in memory, or one that is read in parts
 
-LAZY = (*FRAME_ARRAYS, "stresses")  # of frames: read when they are asked for
+LAZY = (*FRAME_ARRAYS, "stresses")  # of frames: read on access
 
 
 @dataclass(frozen=True)
 class Results:
-    """A finished or interrupted run; a killed one reads up to its last frame."""
+    """Results of a finished or interrupted run; a killed one is read up to its last frame."""
 
     summary: dict[str, Any]  # {} where a killed run left none
     model: Model
@@ -60,18 +60,18 @@ class Results:
 
 
 class JointHistory(NamedTuple):
-    """The joints as they were drawn, and their states frame by frame."""
+    """Joints as drawn with their states frame by frame."""
 
     places: JointPlaces
     states: JointStates  # in memory or datasets of a file that is open, (n_frames, n_joints) each
 
     def at(self, frame: int) -> JointStates:
-        """Of one frame, by its number."""
+        """Return the joint states of one frame, by its number."""
         return JointStates(*(values[frame] for values in self.states))
 
 
 class Frames(Sequence[Frame]):
-    """All frames of a run, handed out one by one; their arrays are in memory, or datasets of a file that is open."""
+    """Sequence of all frames of a run, in memory or read from an open file."""
 
     def __init__(
         self, columns: dict[str, Stored], contacts: dict[str, Stored], links: LinkRecord | None = None
@@ -122,9 +122,9 @@ class Frames(Sequence[Frame]):
 
 
 def read(folder: Path | str, *, lazy: bool = False) -> Results:
-    """The results in `folder`; UsageError where there are none, DamagedResults where they are not what a run writes.
+    """Read the results in `folder`; UsageError where there are none, DamagedResults where they are damaged.
 
-    lazy: frames are read when they are asked for, from a file that the caller closes by `Results.source`.
+    lazy: frames are read on access, from a file that the caller closes by `Results.source`.
     """
     folder = Path(folder)
     require_folder(folder)
@@ -150,7 +150,7 @@ def read(folder: Path | str, *, lazy: bool = False) -> Results:
 
 
 def read_summary(folder: Path) -> dict[str, Any]:
-    """What summary.json says; {} where there is none. Raises DamagedResults."""
+    """Read summary.json; {} where there is none. Raises DamagedResults."""
     path = folder / SUMMARY
     if not path.exists():
         return {}
@@ -173,12 +173,12 @@ def _no_number(name: str) -> Any:
 
 
 def _reason(error: Exception) -> str:
-    """The first line of what a library says, without its own punctuation."""
+    """Return the first line of a library's error message, without its punctuation."""
     return (str(error).strip("'\"").splitlines() or [type(error).__name__])[0]
 
 
 def _opened(file: Path | Any) -> h5py.File:
-    """Raises DamagedResults where a file is not HDF5, or is not whole."""
+    """Open an HDF5 file. Raises DamagedResults where a file is not HDF5, or is not whole."""
     try:
         return h5py.File(file, "r", locking=False) if isinstance(file, Path) else h5py.File(file, "r")
     except (OSError, RuntimeError, ValueError, KeyError) as error:
@@ -186,7 +186,7 @@ def _opened(file: Path | Any) -> h5py.File:
 
 
 def _arrays(file: h5py.File, folder: Path) -> StoredArrays:
-    """What a file holds. Raises DamagedResults, and UsageError where it is of another format."""
+    """Open the checked arrays of a file. Raises DamagedResults, and UsageError for another format."""
     check_size(file, folder / RESULTS)
     dem = file.get("dem")
     found = dem.attrs.get("format") if isinstance(dem, h5py.Group) else None
@@ -196,7 +196,7 @@ def _arrays(file: h5py.File, folder: Path) -> StoredArrays:
 
 
 def _read(arrays: StoredArrays, summary: dict[str, Any], lazy: Path | None) -> Results:
-    """lazy: the folder of results whose frames are read later."""
+    """Read the results. lazy: the folder of results whose frames are read later."""
     dem = arrays.dem
     history = dem["history"]
     n_rows = len(history["stage"]) if "stage" in history else 0
@@ -227,7 +227,7 @@ def _read(arrays: StoredArrays, summary: dict[str, Any], lazy: Path | None) -> R
 
 
 def _check_agreement(found: Results) -> None:
-    """Raises DamagedResults where summary.json is that of another run than the arrays."""
+    """Raise DamagedResults where summary.json belongs to another run than the arrays."""
     kind, modes = found.summary.get("kind", found.kind), found.summary.get("frequencies") or ()
     if kind != found.kind:
         raise DamagedResults(f"{SUMMARY} is of kind {kind!r}, {RESULTS} of kind {found.kind!r}")

@@ -1,4 +1,4 @@
-"""Comparison with reference values: one verdict per `[reference]` table of the case."""
+"""Compare results with reference values: one verdict per `[reference]` table of the case."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TOLD_BY = ("status", "safety_factor", "stands_at", "fails_at")  # quantities of 
 
 
 class ReferenceTable(Protocol):
-    """A `[reference]` table, as far as the comparison asks it."""
+    """Reference table as the comparison needs it."""
 
     @property
     def path(self) -> str:
@@ -25,27 +25,27 @@ class ReferenceTable(Protocol):
 
     @property
     def expected(self) -> bool | float | tuple[float, ...] | str:
-        """Value, ends of the interval, or loads of the curve, that it should have."""
+        """Expected value, interval, or loads of a curve."""
 
     @property
     def displacements(self) -> tuple[float, ...] | None:
-        """Of a curve: where its values are [m]; None of anything else."""
+        """Displacements of a reference curve [m]; None of anything else."""
 
     @property
     def allowance(self) -> float | None:
-        """How far off a number may be."""
+        """Absolute tolerance of a number."""
 
     @property
     def kind(self) -> str:
-        """What sort of reference this is."""
+        """Kind of the reference."""
 
     @property
     def missed(self) -> str | None:
-        """Why the case says that this is missed; None: it is to be met."""
+        """Reason why the case declares this reference as missed; None: it is to be met."""
 
 
 def verdicts(summary: Mapping[str, Any], references: Sequence[ReferenceTable]) -> list[dict[str, Any]]:
-    """What summary.json says of each reference.
+    """Compare a summary with all references; returns the verdicts of summary.json.
 
     value, tolerance and passed, as the contract of `dem run` has them; quantity, kind, found; `missed`, why the case
     says that this is missed; `problem`, why there is nothing to compare.
@@ -58,7 +58,7 @@ def verdicts(summary: Mapping[str, Any], references: Sequence[ReferenceTable]) -
 
 
 def verdict(known: Mapping[str, Value], reference: ReferenceTable) -> dict[str, Any]:
-    """One reference and the numbers, words and truths of a summary by their paths."""
+    """Compare one reference with the values of a summary by their paths."""
     found = known.get(reference.path)
     value = list(reference.expected) if isinstance(reference.expected, tuple) else reference.expected
     answer = {
@@ -76,7 +76,7 @@ def verdict(known: Mapping[str, Value], reference: ReferenceTable) -> dict[str, 
 
 
 def curve_verdict(curve: Any, reference: ReferenceTable) -> dict[str, Any]:
-    """One reference that is a curve, and the curve of a summary: `displacements` and `loads`.
+    """Compare a reference curve with the curve of a summary: `displacements` and `loads`.
 
     found: our loads at its displacements, between the points of ours in proportion. What counts is mean_error, the mean
     size of the differences; it and largest_error, that of largest size with its sign, are in the unit of the loads.
@@ -102,7 +102,7 @@ def curve_verdict(curve: Any, reference: ReferenceTable) -> dict[str, Any]:
 
 
 def passes(found: Value, expected: bool | float | tuple[float, ...] | str, allowance: float | None) -> bool:
-    """Whether what was found is what was expected; nothing found never is, nor a truth for a number."""
+    """Test whether a found value matches the expected one; no value never does."""
     if isinstance(expected, (bool, str)):
         return type(found) is type(expected) and found == expected
     off = error(found, expected)
@@ -110,12 +110,12 @@ def passes(found: Value, expected: bool | float | tuple[float, ...] | str, allow
 
 
 def error_of(answer: Mapping[str, Any]) -> float | None:
-    """How far off a verdict is: of a curve the mean size of its differences, else `error`."""
+    """Return the error of a verdict: of a curve the mean size of its differences, else `error`."""
     return answer.get("mean_error") if "displacements" in answer else error(answer["found"], answer["value"])
 
 
 def error(found: Value, expected: bool | float | tuple[float, ...] | list[float] | str) -> float | None:
-    """How far a number is above (+) or below (−) the expected one, or outside the interval; None of anything else."""
+    """Return the signed error of a number beyond the expected value or interval; None of anything else."""
     if isinstance(expected, (bool, str)) or isinstance(found, (bool, str)) or found is None:
         return None
     low, high = expected if isinstance(expected, (list, tuple)) else (expected, expected)
@@ -123,7 +123,7 @@ def error(found: Value, expected: bool | float | tuple[float, ...] | list[float]
 
 
 def why_nothing(known: Mapping[str, Value], reference: ReferenceTable) -> str | None:
-    """Why there is nothing to compare; None where there is something, or where no answer is one (no failure load)."""
+    """Return the reason why there is nothing to compare; None where there is something."""
     if reference.path in known:
         found, wanted = known[reference.path], _sort(reference.expected)
         fits = found is None or _sort(found) == wanted
@@ -138,12 +138,14 @@ def why_nothing(known: Mapping[str, Value], reference: ReferenceTable) -> str | 
 
 
 def as_declared(answer: Mapping[str, Any]) -> bool:
-    """Whether a verdict is what the case says: passed, or missed where it declares that. A met known miss is not."""
+    """Test whether a verdict is as declared: passed, or missed where the case declares that."""
     return "problem" not in answer and bool(answer["passed"]) != ("missed" in answer)
 
 
 def in_summary(answers: Sequence[Mapping[str, Any]]) -> Any:
-    """The key `reference` of summary.json: value, tolerance and passed of one plain failure load; of several a list."""
+    """Return the key `reference` of summary.json: value, tolerance and passed of one plain failure load; else a
+    list.
+    """
     if len(answers) != 1:
         return list(answers)
     (answer,) = answers
@@ -153,7 +155,7 @@ def in_summary(answers: Sequence[Mapping[str, Any]]) -> Any:
 
 
 def from_summary(reference: Any) -> list[dict[str, Any]]:
-    """The verdicts in the key `reference` of a summary; none where it has none."""
+    """Return the verdicts in the key `reference` of a summary; none where it has none."""
     if not reference:
         return []
     answers = reference if isinstance(reference, list) else [reference]
@@ -161,7 +163,7 @@ def from_summary(reference: Any) -> list[dict[str, Any]]:
 
 
 def unexpected_fall(summary: Mapping[str, Any], references: Sequence[Mapping[str, Any]]) -> bool:
-    """Whether a structure falls with nothing on it but its given loads, and no reference of its case says so.
+    """Test whether a structure fails under its given loads alone although no reference of its case says so.
 
     That is the status of any kind of analysis, or a safety analysis that proved failure at the strengths of the case.
     references: verdicts; one that is about how the run ended has the last word.
@@ -172,5 +174,5 @@ def unexpected_fall(summary: Mapping[str, Any], references: Sequence[Mapping[str
 
 
 def _sort(value: Any) -> str:
-    """What a value is, in words."""
+    """Name the type of a value in words."""
     return "true or false" if isinstance(value, bool) else "a word" if isinstance(value, str) else "a number"

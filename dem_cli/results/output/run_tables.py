@@ -1,4 +1,4 @@
-"""fragility.csv and repeats.csv: one line per run, always in the same order and with every digit."""
+"""Write fragility.csv and repeats.csv: one line per run, always in the same order and with every digit."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ RUN_COLUMNS = ("structure", "record", "intensity", "peak_acceleration", "collaps
 
 
 def write_runs(path: Path, rows: Sequence[RunRow], monitors: Sequence[str]) -> None:
-    """Columns as in COLUMNS, then the peak of each monitor; empty where nobody knows, or it means nothing."""
+    """Write the run table: COLUMNS, then the peak of each monitor; empty where it is unknown or meaningless."""
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow([*RUN_COLUMNS, *(cell(f"peak {name}") for name in monitors)])

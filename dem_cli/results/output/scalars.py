@@ -1,4 +1,4 @@
-"""Plain values of a summary: what strict JSON can hold, and every single number by its path."""
+"""Plain values of a summary: strict JSON, and every single number by its path."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 
 def plain(value: Any) -> Any:
-    """Numbers, lists and dicts that strict JSON can hold; not-a-number and infinity become null."""
+    """Convert values to strict JSON; not-a-number and infinity become null."""
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):
@@ -25,7 +25,7 @@ def plain(value: Any) -> Any:
 
 
 def scalars(summary: Mapping[str, Any]) -> dict[str, float | int | str | bool | None]:
-    """Every single number, word and truth of a summary by its path, such as "peaks.top displacement.max".
+    """Collect every single number, text and truth value of a summary by its path, such as "peaks.top displacement.max".
 
     Items of lists have their number in it: "failure_load_bracket.0".
     """

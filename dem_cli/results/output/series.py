@@ -1,4 +1,4 @@
-"""Time histories: base motion and monitors at an even rate, in results.h5 (/dem/series) and in history.csv."""
+"""Write time histories: base motion and monitors at an even rate, in results.h5 (/dem/series) and history.csv."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _TEXT = h5py.string_dtype()
 
 
 class Peak(NamedTuple):
-    """The largest values of a monitor in all that was followed: by size, to the positive side, to the negative one."""
+    """Extreme values of a monitor over the whole motion: by size, to the positive side, to the negative one."""
 
     peak: float  # the larger of max and min by size, with its sign
     time: float  # of the peak [s]
@@ -45,7 +45,7 @@ class HistorySeries(NamedTuple):
 
 
 class SeriesWriter:
-    """Writer of time histories: keeps what comes in memory until `flush`; remembers the peaks."""
+    """Writer of time histories: buffers them until `flush`, and records the peaks."""
 
     def __init__(self, group: h5py.Group, names: Sequence[str], quantities: Sequence[str], dimension: int):
         self.names, self.quantities = tuple(names), tuple(quantities)
@@ -60,7 +60,7 @@ class SeriesWriter:
         self._peaks: list[Peak] = []
 
     def append(self, samples: Samples) -> None:
-        """Keep a stretch. Raises ValueError where it has not one value per monitor."""
+        """Append a stretch of samples. Raises ValueError where the number of monitors is wrong."""
         n_values = samples.monitors.shape[1]
         if n_values != len(self.names):
             raise ValueError(f"{n_values} values of {len(self.names)} monitors")
@@ -87,7 +87,7 @@ class SeriesWriter:
             self._peaks[i : i + 1] = [Peak(*largest, *most, *least, last, *during)]
 
     def _extremes(self, samples: Samples) -> np.ndarray:
-        """As Samples.extremes; those of samples where nothing else is known."""
+        """Return the extremes of samples, those computed by the solver where available."""
         if len(samples.extremes) or not self.names:
             return samples.extremes
         values = np.where(np.isfinite(samples.monitors), samples.monitors, 0.0)  # a run may end in nonsense
@@ -95,7 +95,7 @@ class SeriesWriter:
         return np.column_stack([values[high, each], samples.times[high], values[low, each], samples.times[low]])
 
     def peaks(self, impacts: bool = False) -> dict[str, dict[str, float | str | None]]:
-        """Extremes with their times, the last value and the unit of each monitor, by name.
+        """Return extremes with their times, the last value and the unit of each monitor, by name.
 
         impacts: whether blocks hit each other: of accelerations the last value alone means something then.
         """
@@ -108,7 +108,7 @@ class SeriesWriter:
         return found
 
     def flush(self) -> None:
-        """Hand what was kept to the file."""
+        """Write the buffered samples to the file."""
         waiting, self._waiting, self.n_waiting = self._waiting, [], 0
         if waiting:
             times, base, monitors = (
@@ -122,7 +122,7 @@ class SeriesWriter:
             self._columns.write_out()
 
     def write_csv(self, path: Path) -> None:
-        """All of it as text, one line per sample."""
+        """Write all samples as text, one line each."""
         series = read_series(self._group, self.dimension)
         with path.open("w", encoding="utf-8", newline="") as file:
             csv.writer(file, lineterminator="\n").writerow(map(cell, headers(series)))
@@ -131,19 +131,19 @@ class SeriesWriter:
 
 
 def headers(series: HistorySeries) -> list[str]:
-    """A name with its unit for each column of `table`."""
+    """Return a name with its unit for each column of `table`."""
     axes = _AXES[: series.base.shape[2]]
     base = [f"base {name} {axis} [{MONITOR_UNITS[name]}]" for name in BASE for axis in axes]
     return ["time [s]", *base, *(f"{name} [{MONITOR_UNITS[quantity]}]" for name, quantity in series.quantities.items())]
 
 
 def table(series: HistorySeries) -> np.ndarray:
-    """Time, motion of the base and monitors side by side, (n, n_columns)."""
+    """Combine time, motion of the base and monitors side by side, (n, n_columns)."""
     return np.column_stack([series.time, series.base.reshape(len(series.time), -1), *series.monitors.values()])
 
 
 def read_series(group: h5py.Group, dimension: int) -> HistorySeries:
-    """What has been written so far."""
+    """Read the samples written so far."""
     names, quantities = (list(map(str, group.attrs[key])) for key in ("monitors", "quantities"))
     if "time" not in group:
         nothing = np.zeros(0)

@@ -1,4 +1,4 @@
-"""Skeletons of results.h5: groups, attributes and empty datasets, made once for all runs that differ in numbers alone.
+"""Skeletons of results.h5: groups, attributes and empty datasets, made once for runs that differ in numbers alone.
 
 A sweep would otherwise create the same thirty datasets with their hundred attributes in every run.
 """
@@ -42,7 +42,7 @@ _images: dict[Any, bytes] = {}
 
 
 class GrowingParts(NamedTuple):
-    """Groups of results.h5 that grow in the course of a run."""
+    """Groups of results.h5 that grow during a run."""
 
     frames: GrowingGroup
     contacts: GrowingGroup
@@ -52,7 +52,7 @@ class GrowingParts(NamedTuple):
 def skeleton(
     model: Model, kind: str, provenance: Mapping[str, str], monitors: tuple[str, ...], quantities: tuple[str, ...]
 ) -> bytes:
-    """The bytes of results.h5 of a run that has begun; the arrays of its model and the case are still empty."""
+    """Create the bytes of results.h5 of a run that has begun, with empty arrays of model and case."""
     sizes = tuple(
         (name, value.shape, value.dtype.str) if isinstance(value, np.ndarray) else (name, value)
         for name, value in _stored(model)
@@ -90,7 +90,7 @@ def _image(
 def growing_parts(
     dem: h5py.Group, dimension: int, kind: str, monitors: tuple[str, ...], quantities: tuple[str, ...]
 ) -> GrowingParts:
-    """The groups of a skeleton that grow."""
+    """Open the growing groups of a skeleton."""
     moving = FRAMES if kind_of(kind).timed else PER_STEP_FRAMES
     said = _said_of_history(monitors, quantities)
     return GrowingParts(
@@ -107,7 +107,7 @@ def _said_of_history(monitors: tuple[str, ...], quantities: tuple[str, ...]) -> 
 
 
 def _columns_of_history(n_monitors: int) -> dict[str, tuple[tuple[int, ...], type]]:
-    """Shape of a row and type of each dataset of the history."""
+    """Return the shape of a row and type of each dataset of the history."""
     columns: dict[str, tuple[tuple[int, ...], type]] = dict.fromkeys(ROW_SCALARS, ((), np.float64))
     columns |= {f"energy/{name}": ((), np.float64) for name in Energy._fields}
     columns |= {"monitor_values": ((n_monitors,), np.float64)} if n_monitors else {}
@@ -115,14 +115,14 @@ def _columns_of_history(n_monitors: int) -> dict[str, tuple[tuple[int, ...], typ
 
 
 def _stored(model: Model) -> Iterator[tuple[str, Any]]:
-    """What results.h5 holds of a model, by name."""
+    """Yield the stored arrays and numbers of a model, by name."""
     for name, value in model._asdict().items():
         if name not in _UNSAID and (name not in (*SPATIAL_MODEL, *WHERE_ASKED_FOR) or len(value)):
             yield name, value
 
 
 def declare_model(group: h5py.Group, model: Model) -> None:
-    """Datasets and attributes for a model; its arrays are still to be filled in."""
+    """Create datasets and attributes for a model, without its values."""
     said = declared(MODEL, model.dimension)
     for name, value in _stored(model):
         if isinstance(value, int):
@@ -134,7 +134,7 @@ def declare_model(group: h5py.Group, model: Model) -> None:
 
 
 def fill_model(group: h5py.Group, model: Model) -> None:
-    """The arrays of a model, in datasets that are there."""
+    """Write the arrays of a model to existing datasets."""
     for name, value in _stored(model):
         if isinstance(value, np.ndarray):
             h5d.open(group.id, name.encode()).write(h5s.ALL, h5s.ALL, np.ascontiguousarray(value))

@@ -1,7 +1,7 @@
-"""Result writer: a run on disk as it goes, in results.h5 (float64, what `reader.read` returns) and files for ParaView.
+"""Write the results of a run as it proceeds, in results.h5 (float64) and files for ParaView.
 
-What results.h5 holds is declared in output/layout.py and told in docs/results.md. `/VTKHDF` in it is a link to that of
-blocks.vtkhdf, for those who open results.h5 itself.
+What results.h5 holds is declared in output/layout.py and described in docs/results.md. `/VTKHDF` in it is a link to
+that of blocks.vtkhdf, for those who open results.h5 itself.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ JointsOf = Callable[[Model], FollowedJoints]
 
 
 class ResultWriter:
-    """Writer of results: give it frames and history rows as they come; `close(summary)` completes the folder."""
+    """Writer of results: takes frames and history rows as they come; `close(summary)` completes the folder."""
 
     def __init__(
         self,
@@ -77,7 +77,7 @@ class ResultWriter:
         self._guarded(lambda: self._start(case_text, provenance))
 
     def _take(self, model: Model) -> None:
-        """The structure of the frames to come, which is kept in the order of the case."""
+        """Set the structure of the frames to come, reordered as in the case."""
         self.drawn, self.order = model, CaseOrder(model)
         self.model = self.order.model(model)
 
@@ -91,7 +91,7 @@ class ResultWriter:
         self._flush()
 
     def follow(self, joints_of: JointsOf) -> None:
-        """Keep the state of every joint with each frame. joints_of: finds the joints of a structure."""
+        """Store the state of every joint with each frame. joints_of: finds the joints of a structure."""
         self._joints_of = joints_of
 
     def _open(self, name: str, begun: bytes = b"") -> h5py.File:
@@ -99,14 +99,14 @@ class ResultWriter:
         return self._files[-1].hdf
 
     def frame(self, frame: Frame) -> None:
-        """Keep a snapshot; everything up to it is on disk when this returns.
+        """Store a snapshot; everything up to it is on disk when this returns.
 
         In a time history all of that waits until a second or two of work have come together.
         """
         self._guarded(lambda: self._frame(frame))
 
     def row(self, row: HistoryRow) -> None:
-        """Keep a row of the history; it goes to disk with the next frame, in a time history as frames do."""
+        """Store a row of the history; it goes to disk with the next frame, in a time history as frames do."""
         if len(row.monitors) != len(self.monitors):
             raise ValueError(f"{len(row.monitors)} monitor values for {len(self.monitors)} monitors")
         self._rows.append(row)
@@ -117,7 +117,7 @@ class ResultWriter:
             self._guarded(self._flush)
 
     def samples(self, samples: Samples) -> None:
-        """Keep a stretch of a time history; it goes to disk as frames do, or when many wait."""
+        """Store a stretch of a time history; it goes to disk as frames do, or when many wait."""
         if self._series is None:
             self._series = SeriesWriter(
                 self.dem.create_group("series"), self.monitors, self.quantities, self.model.dimension
@@ -127,7 +127,7 @@ class ResultWriter:
             self._guarded(self._flush)
 
     def structure(self, model: Model) -> None:
-        """Frames to come are of this structure, not of that of the case. Raises ValueError after the first frame."""
+        """Set another structure for the frames to come. Raises ValueError after the first frame."""
         if self.n_frames:
             raise ValueError("frames of another structure are kept already")
         self._take(model)  # of modes and limit analysis: frames of it have no links
@@ -141,12 +141,14 @@ class ResultWriter:
         self._guarded(store)
 
     def runs(self, rows: Sequence[RunRow]) -> None:
-        """Keep the table of an analysis that consists of many runs."""
+        """Write the table of an analysis that consists of many runs."""
         name = TABLES.get(self.kind, TABLES["time-history"])
         self._guarded(lambda: write_runs(self.folder / name, rows, self.monitors))
 
     def measured(self, found: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-        """What a summary says of the monitors: `peaks` of a time history, else `monitors` in the last equilibrium."""
+        """Return the monitor values of a summary: `peaks` of a time history, else `monitors` in the last
+        equilibrium.
+        """
         kept = (
             {"peaks": self._series.peaks(bool(found.get("impacts")))}
             if self._series
@@ -172,7 +174,7 @@ class ResultWriter:
         self._guarded(finish)
 
     def abandon(self) -> None:
-        """Close what is open without completing it, whatever the disk says."""
+        """Close open files without completing them, whatever the disk says."""
         while self._files:
             self._files.pop().abandon()
 
@@ -212,7 +214,7 @@ class ResultWriter:
             self._flush()
 
     def _worked(self, step: int) -> bool:
-        """Whether a time history has worked for so long that what waits is worth a disk's time.
+        """Test whether enough work has been done since the last write to be worth another.
 
         By steps and not by a clock: the same run leaves the same bytes.
         """
@@ -220,7 +222,7 @@ class ResultWriter:
         return kind_of(self.kind).timed and work >= _UNFLUSHED
 
     def _store_frames(self) -> None:
-        """All frames that wait, together."""
+        """Write all buffered frames together."""
         if not self._waiting:
             return
         if self._vtk is None:
@@ -238,7 +240,7 @@ class ResultWriter:
         self._vtk.add(stack.numbers("time") if kind_of(self.kind).timed else first + np.arange(float(n)), stack, now)
 
     def _begin_frames(self, links: LinkRecord | None) -> None:
-        """The files for ParaView, and what does not change of joints and links."""
+        """Open the ParaView files, and store the constant data of joints and links."""
         joints = self._joints_of and self._joints_of(self.drawn)
         links = links and self.order.links(links)
         places = None
@@ -261,7 +263,7 @@ class ResultWriter:
         self.dem.parent["VTKHDF"] = h5py.ExternalLink(BLOCKS, "/VTKHDF")
 
     def _keep(self, stack: FrameStack) -> None:
-        """In results.h5."""
+        """Store frames in results.h5."""
         frames, contacts, n = self._frames, self._contacts, len(stack.frames)
         for name, values in stack.own_contacts().stored().items():
             contacts.append(name, values)
@@ -280,12 +282,12 @@ class ResultWriter:
 
 
 def _by_frame(rows: np.ndarray, n_frames: int) -> np.ndarray:
-    """Rows of blocks, frame by frame, (n_frames, n_blocks, ...)."""
+    """Reshape rows of blocks frame by frame, (n_frames, n_blocks, ...)."""
     return rows.reshape(n_frames, -1, *rows.shape[1:])
 
 
 def _links_of(model: Model) -> list[tuple[str, Any]]:
-    """Name and arrays of each tie and bar."""
+    """Return name and arrays of each tie and bar."""
     return list(zip(model.link_names, (link for link in model.links for _ in range(link.n_drawn)), strict=True))
 
 

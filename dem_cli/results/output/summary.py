@@ -1,4 +1,4 @@
-"""summary.json: the answer and how it was obtained, in a fixed order and in strict JSON."""
+"""Write summary.json: the answer and how it was obtained, in a fixed order and in strict JSON."""
 
 from __future__ import annotations
 
@@ -68,26 +68,27 @@ ORDER = (
 
 
 def ordered(summary: Mapping[str, Any]) -> dict[str, Any]:
-    """Known keys first, in the order above, the rest as it came; all values plain and finite or None."""
+    """Order a summary: known keys first, the rest as it came; all values plain and finite or None."""
     keys = [key for key in ORDER if key in summary] + [key for key in summary if key not in ORDER]
     return {key: plain(summary[key]) for key in keys}
 
 
 def to_json(summary: Mapping[str, Any]) -> str:
-    """One JSON object, a key per line."""
+    """Format a summary as one JSON object, a key per line."""
     return json.dumps(ordered(summary), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def write_summary(folder: Path, summary: Mapping[str, Any]) -> None:
-    """Write it under its name only when it is whole."""
+    """Write a summary atomically."""
     part = folder / f".{SUMMARY}.part"
     part.write_text(to_json(summary), encoding="utf-8", newline="\n")
     part.replace(folder / SUMMARY)
 
 
 def exit_code(summary: Mapping[str, Any]) -> int:
-    """What `dem run` returns: 0 solved, 1 outside a reference, above its bound or does not stand, 3 gave up,
-    130 interrupted."""
+    """Return the exit code of `dem run`: 0 solved, 1 outside a reference, above its bound or does not stand, 3 gave up,
+    130 interrupted.
+    """
     status = str(summary["status"])
     if status == "interrupted":
         return 130

@@ -1,1 +1,1 @@
-"""Pictures and charts of results, by matplotlib."""
+"""Draw pictures and charts of results with matplotlib."""

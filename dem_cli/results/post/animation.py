@@ -1,4 +1,4 @@
-"""collapse.gif: the structure from frame to frame; of a time history as fast as it was, on the ground that moves."""
+"""Draw collapse.gif: the structure from frame to frame, time histories in real time on the moving ground."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _EDGES = tuple((_WHITE, ink) for ink in (style.INK, style.GREY, style.COLLAPSE, 
 
 
 def draw_animation(results: Results, path: Path, asked: Standpoint = AS_BEST) -> None:
-    """One picture per frame. Raises UsageError where the run kept no frames, or Pillow is missing."""
+    """Draw one picture per frame. Raises UsageError where the run kept no frames, or Pillow is missing."""
     if not len(results.frames):
         raise UsageError("the results hold no frames (output.frames = 0), so there is nothing to animate")
     movie = playback(results)
@@ -42,7 +42,7 @@ def draw_animation(results: Results, path: Path, asked: Standpoint = AS_BEST) ->
 
 
 def _pictures(results: Results, frames: Sequence[Frame], asked: Standpoint) -> list[Any]:
-    """Frames as images that share one palette."""
+    """Draw frames as images that share one palette."""
     with style.canvas() as make:
         try:
             from PIL import Image
@@ -60,7 +60,7 @@ def _pictures(results: Results, frames: Sequence[Frame], asked: Standpoint) -> l
 
 
 def _palette(lights: Sequence[float]) -> list[int]:
-    """Red, green and blue of every colour of the pictures: flat areas and the shades of their edges.
+    """Return red, green and blue of every colour of the pictures: flat areas and the shades of their edges.
 
     lights: by which blocks are lighter or darker than their stone.
     """
@@ -78,7 +78,7 @@ def _palette(lights: Sequence[float]) -> list[int]:
 
 
 class _Scene:
-    """A figure whose blocks move: the structure above, the acceleration of its base below."""
+    """Animated figure: the structure above, the acceleration of its base below."""
 
     def __init__(self, results: Results, frames: Sequence[Frame], make: Any, asked: Standpoint):
         model, self.results = results.model, results
@@ -104,7 +104,7 @@ class _Scene:
         self.figure.set_layout_engine("none")
 
     def _corners(self, frame: Frame) -> np.ndarray:
-        """Corners as drawn, carried along by the ground [m], (n_vertices, d)."""
+        """Return the corners as drawn, carried along by the ground [m], (n_vertices, d)."""
         moved = view_box.ground(self.results.series, frame) if self.carried else 0.0
         return view_box.corners(self.model, frame, self.scale, moved)
 
@@ -132,7 +132,7 @@ class _Scene:
         self.cursor = axis.axvline(0.0, color=style.COLLAPSE, lw=1.4)
 
     def show(self, frame: Frame) -> None:
-        """Put the blocks where they are in a frame."""
+        """Move the blocks to their places in a frame."""
         self.place(self._corners(frame))
         timed = kind_of(self.results.kind).timed
         text = f"{frame.time:.2f} s" if timed else f"{frame.stage}: λ = {frame.load:.3f}"
@@ -142,13 +142,13 @@ class _Scene:
             self.cursor.set_xdata([frame.time, frame.time])
 
     def pixels(self) -> tuple[tuple[int, int], bytes]:
-        """Size and RGBA bytes of the picture."""
+        """Return size and RGBA bytes of the picture."""
         self.figure.canvas.draw()
         buffer = np.asarray(self.figure.canvas.buffer_rgba())
         return (buffer.shape[1], buffer.shape[0]), buffer.tobytes()
 
 
 def _size(extent: np.ndarray) -> tuple[float, float]:
-    """Width and height of the structure's part of the picture [inches]."""
+    """Return width and height of the structure's part of the picture [inches]."""
     width = float(np.clip(4.4 * extent[0] / extent[1], 4.2, 6.4))
     return width, float(np.clip(width * extent[1] / extent[0], 1.6, 4.6))

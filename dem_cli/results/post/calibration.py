@@ -1,4 +1,4 @@
-"""calibration.png: displacement against failure load of all profiles tried (thesis Figure 7-40)."""
+"""Draw calibration.png: displacement against failure load of all profiles tried (thesis Figure 7-40)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _MEASURED = "#c0392b"
 
 
 def draw_calibration(summary: Mapping[str, Any], path: Path) -> None:
-    """One marker per shape, larger with the aperture; the measured point, and a ring around the closest one.
+    """Draw one marker per shape, larger with the aperture; the measured point, and a ring around the closest one.
 
     summary: that of `dem calibrate`.
     """
@@ -64,7 +64,7 @@ def _draw_points(
 
 
 def _draw_shapes(figure: Any, cells: Any, shapes: Mapping[str, Any], looks: Mapping[str, tuple[str, str]]) -> None:
-    """What each marker means: the polygon on its flat surface, heights exaggerated."""
+    """Draw the legend of the shapes: the polygon on its flat surface, heights exaggerated."""
     for i, (shape, (colour, marker)) in enumerate(looks.items()):
         axis = figure.add_subplot(cells[i])
         places, rises = shapes[shape]["places"], shapes[shape]["rises"]

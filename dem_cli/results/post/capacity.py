@@ -1,4 +1,4 @@
-"""capacity.png: load multiplier over displacement, up to failure and beyond, its bilinear system, curves of tests."""
+"""Draw capacity.png: load multiplier over displacement, up to failure and beyond, bilinear system, test curves."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ZOOM_FROM = 6.0  # a second panel where the collapse goes this many times farth
 
 
 class CapacityAxis(NamedTuple):
-    """Displacements that loads are drawn against."""
+    """Displacement axis of a capacity curve."""
 
     values: np.ndarray  # of each row of the history [m]
     label: str
@@ -26,17 +26,17 @@ class CapacityAxis(NamedTuple):
 
     @property
     def farthest(self) -> float:
-        """Largest size [m]."""
+        """Largest absolute displacement [m]."""
         return float(np.abs(self.values).max(initial=0.0))
 
     @property
     def signed(self) -> bool:
-        """Whether it is the one that was controlled, which has a sign."""
+        """Tell whether the displacement is the controlled one, which has a sign."""
         return self.label != LARGEST
 
 
 def capacity_axis(results: Results) -> CapacityAxis:
-    """Displacement axis of the loads of a run."""
+    """Return the displacement axis of the loads of a run."""
     history, summary = results.history, results.summary
     curve = summary.get("capacity_curve")
     turns: list[dict[str, Any]] = summary.get("turning_points") or [{}]
@@ -53,7 +53,7 @@ def capacity_axis(results: Results) -> CapacityAxis:
 
 
 def _of_monitor(results: Results, name: str, curve: Mapping[str, Any] | None) -> CapacityAxis:
-    """The monitor that was controlled, since the structure was at rest; of a curve as it begins, upwards."""
+    """Return the displacement axis of the controlled monitor from rest, positive where a curve begins."""
     values = results.monitors[name]
     rest = np.flatnonzero(results.history["stage"] == "gravity")
     values = values - (values[rest[-1]] if len(rest) else 0.0)
@@ -63,7 +63,7 @@ def _of_monitor(results: Results, name: str, curve: Mapping[str, Any] | None) ->
 
 
 def of_frames(results: Results, axis: CapacityAxis, frames: Sequence[Mapping[str, Any]]) -> list[float]:
-    """Displacement of frames on an axis [m]: of the row of their step and load. frames: as the view has them."""
+    """Return the displacement of frames on an axis [m], by their step and load. frames: as the view has them."""
     if not axis.signed:
         return [frame["displacement"] for frame in frames]
     steps, loads = results.history["step"], results.history["load"]
@@ -97,7 +97,7 @@ def draw_capacity(results: Results, path: Path) -> None:
 
 
 def _title(summary: Mapping[str, Any], panel: int, panels: int) -> str:
-    """What a panel shows, and in the first one whose stiffness elastic displacements have."""
+    """Return the title of a panel, with the stiffness of elastic displacements in the first one."""
     parts = [("up to failure", "whole collapse")[panel]] if panels > 1 else []
     ratio = summary.get("curve_joint_stiffness")
     if ratio and panel == 0:
@@ -106,7 +106,7 @@ def _title(summary: Mapping[str, Any], panel: int, panels: int) -> str:
 
 
 def off_the_load(summary: Mapping[str, Any]) -> str:
-    """What to say of a curve that misses the failure load by more than may be drawn as a capacity; else nothing."""
+    """Return the remark on a curve that misses the failure load by more than a tolerance; else empty."""
     peak, load = summary.get("peak_of_curve"), summary.get("failure_load")
     if not summary.get("curve_off_the_load") or not peak or not load:
         return ""
@@ -115,7 +115,7 @@ def off_the_load(summary: Mapping[str, Any]) -> str:
 
 
 def _say(axis: Any, words: str) -> None:
-    """Words over a curve, that go with the picture wherever it goes."""
+    """Write a remark over a curve, which stays part of the picture."""
     box = {"boxstyle": "round", "fc": "white", "ec": style.FAILURE, "alpha": 0.9}
     axis.text(
         0.98, 0.97, words, transform=axis.transAxes, ha="right", va="top", fontsize=9, color=style.FAILURE, bbox=box,
@@ -124,7 +124,7 @@ def _say(axis: Any, words: str) -> None:
 
 
 def _draw_legend(figure: Any, handles: list[Any], labels: list[str]) -> None:
-    """Below the panels, in as few rows as are no wider than the figure."""
+    """Draw the legend below the panels, in as few rows as fit the width of the figure."""
     for rows in range(1, max(1, len(labels)) + 1):
         columns = -(-max(1, len(labels)) // rows)
         legend = figure.legend(handles, labels, loc="outside lower center", ncols=columns, columnspacing=1.4)
@@ -158,7 +158,7 @@ def _draw_curve(axis: Any, results: Results, along: CapacityAxis, limit: float) 
 
 
 def _draw_system(axis: Any, curve: Mapping[str, Any], factor: float) -> None:
-    """The bilinear system over its curve."""
+    """Draw the bilinear system over its curve."""
     system = curve.get("bilinear")
     if system:
         ends = [0.0, factor * system["yield_displacement"], factor * system["ultimate_displacement"]]
@@ -167,7 +167,7 @@ def _draw_system(axis: Any, curve: Mapping[str, Any], factor: float) -> None:
 
 
 def _draw_tests(axis: Any, summary: Mapping[str, Any], factor: float) -> None:
-    """Curves that the case is compared with."""
+    """Draw the reference curves of the case."""
     curves = [one for one in from_summary(summary.get("reference")) if one.get("displacements")]
     for i, one in enumerate(curves):
         x = factor * np.array(one["displacements"])
@@ -176,13 +176,13 @@ def _draw_tests(axis: Any, summary: Mapping[str, Any], factor: float) -> None:
 
 
 def with_breaks(steps: np.ndarray, *columns: np.ndarray) -> list[np.ndarray]:
-    """The columns with a gap wherever the steps start anew: another simulation of the same run."""
+    """Insert a gap into the columns wherever the steps start anew: another simulation of the same run."""
     starts = np.flatnonzero(np.diff(steps) < 0) + 1
     return [np.insert(column.astype(float), starts, np.nan) for column in columns]
 
 
 def _draw_answers(axis: Any, summary: dict[str, Any], labelled: bool) -> None:
-    """Horizontal lines: failure load with its bracket, limit analysis, reference."""
+    """Draw horizontal lines: failure load with its bracket, limit analysis, reference."""
     load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
     if load is not None:
         if bracket and None not in bracket:

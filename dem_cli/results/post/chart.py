@@ -1,4 +1,4 @@
-"""Layout of charts: panels, units that read well, limits, colours of a family, where the key to them stands."""
+"""Layout of charts: panels, readable units, limits, colours of a family of curves, place of the legend."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class ChartOptions:
 
     @property
     def inches(self) -> tuple[float, float]:
-        """Width and height."""
+        """Width and height of the chart [inches]."""
         if self.size is None:
             return SIZE
         width, height = self.size
@@ -59,7 +59,7 @@ class FamilyColours:
         self.scale, self.low, self.high = scale, min(numbers, default=0.0), max(numbers, default=1.0)
 
     def colour(self, value: Any) -> Any:
-        """Of a member."""
+        """Return the colour of a member."""
         if self.bar:
             return self.scale((value - self.low) / (self.high - self.low))
         i = self.values.index(value)
@@ -69,7 +69,7 @@ class FamilyColours:
 
 
 def draw_bar(figure: Any, axes: Any, keys: FamilyColours, label: str) -> None:
-    """The scale of colours beside all panels."""
+    """Draw the colour bar beside all panels."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
@@ -79,12 +79,12 @@ def draw_bar(figure: Any, axes: Any, keys: FamilyColours, label: str) -> None:
 
 
 def wrapped(text: str, width: int = 22) -> str:
-    """A heading of a legend in short lines."""
+    """Wrap a heading of a legend into short lines."""
     return "\n".join(textwrap.wrap(text, width)) or text
 
 
 def fitted(quantity: Quantity, values: Sequence[np.ndarray]) -> tuple[float, str]:
-    """Factor on values so that they read well, and the label that goes with it."""
+    """Return a factor that makes values readable, and the matching label."""
     if quantity.unit not in ("m", "J", "N"):
         return 1.0, quantity.label()
     largest = max((float(np.abs(v[np.isfinite(v)]).max(initial=0.0)) for v in values), default=0.0)
@@ -97,7 +97,7 @@ def fitted(quantity: Quantity, values: Sequence[np.ndarray]) -> tuple[float, str
 
 
 def dress(axis: Any, options: ChartOptions) -> None:
-    """Limits and logarithms as asked for. Raises UsageError where an axis cannot be logarithmic."""
+    """Apply limits and logarithmic scales. Raises UsageError where an axis cannot be logarithmic."""
     for name, limits in (("x", options.x_limits), ("y", options.y_limits)):
         if name in options.log:
             if getattr(axis, f"get_{name}lim")()[1] <= 0.0:
@@ -109,7 +109,7 @@ def dress(axis: Any, options: ChartOptions) -> None:
 
 
 def title(figure: Any, text: str) -> None:
-    """One line; cut where it would leave the picture."""
+    """Draw the title on one line, cut where it would leave the picture."""
     width = figure.get_figwidth()
     most = int(_LONGEST_TITLE * width * 1.25)
     text = text if len(text) <= most else text[: most - 1] + "…"
@@ -118,7 +118,7 @@ def title(figure: Any, text: str) -> None:
 
 
 def check_format(path: Path) -> None:
-    """UsageError where matplotlib would not know what to write."""
+    """Raise UsageError where matplotlib does not know the file format."""
     if path.suffix.lower() not in CHART_FORMATS:
         raise UsageError(
             f"-o {path}: the name of a chart has to end in {', '.join(CHART_FORMATS[:-1])} or {CHART_FORMATS[-1]}"

@@ -1,4 +1,4 @@
-"""collapse.png: the structure at failure and at the end; joints by state, thrust line or force vectors."""
+"""Draw collapse.png: the structure at failure and at the end, joints by state, thrust line or force vectors."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LEGEND_ROOM = 0.85  # inches
 
 
 def draw_collapse(results: Results, path: Path, asked: Standpoint = AS_BEST) -> None:
-    """One panel at failure, one at the last frame; one only where they are the same."""
+    """Draw one panel at failure and one at the last frame; only one where they are the same."""
     model, panels = results.model, _panels(results)
     drawing = drawing_of(model, panels[-1][1], asked)
     corners = [drawing.flat(rest_vertices(model))]
@@ -48,7 +48,7 @@ def draw_collapse(results: Results, path: Path, asked: Standpoint = AS_BEST) -> 
 
 
 def _panels(results: Results) -> list[tuple[str, Frame]]:
-    """The frame at failure, or the last one under load where there is no failure, and the last one of all."""
+    """Choose the frame at failure, or the last one under load where there is no failure, and the last one of all."""
     frames = results.frames
     if not len(frames):
         return []
@@ -73,7 +73,7 @@ def _panels(results: Results) -> list[tuple[str, Frame]]:
 
 
 def _last_and_first(results: Results) -> list[tuple[str, Frame]]:
-    """Of a safety analysis: the last structure that stands, and the first that fails as far as it was followed."""
+    """Choose the frames of a safety analysis: the last standing structure, and the first that fails at its end."""
     summary, frames = results.summary, results.frames
     name = "F" if summary["vary"] == "strength" else summary["vary"]
     chosen = {frame.stage == "collapse": frame for frame in (frames[i] for i in range(len(frames)))}
@@ -84,7 +84,7 @@ def _last_and_first(results: Results) -> list[tuple[str, Frame]]:
 
 
 def _instants(results: Results) -> list[tuple[str, Frame]]:
-    """Of a time history: the start, the collapse or else the largest displacement, and the end."""
+    """Choose the frames of a time history: the start, the collapse or else the largest displacement, and the end."""
     frames, at = results.frames, results.summary.get("collapse_time")
     last = len(frames) - 1
     if at is not None:
@@ -96,7 +96,7 @@ def _instants(results: Results) -> list[tuple[str, Frame]]:
 
 
 def failure_frame(results: Results) -> int | None:
-    """The frame on the way into failure, under the lowest load that the structure did not stand."""
+    """Return the frame that leads to failure, under the lowest load that the structure did not carry."""
     if results.summary.get("failure_load") is None:
         return None
     high = results.summary["failure_load_bracket"][1]
@@ -114,7 +114,7 @@ def _panel_title(name: str, frame: Frame, scale: float, kind: str) -> str:
 
 
 def window(model: Model, corners: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Limits of all panels: all blocks with a margin; of the ground only what is near. corners: (n_vertices, 2)."""
+    """Compute the limits of all panels: all blocks with a margin, only the nearby ground. corners: (n_vertices, 2)."""
     free = ~model.fixed[model.vertex_blocks]
     moving = np.concatenate([c[free] if free.any() else c for c in corners])
     everything = np.concatenate(corners)
@@ -125,7 +125,7 @@ def window(model: Model, corners: list[np.ndarray]) -> tuple[np.ndarray, np.ndar
 
 
 def _layout(extent: np.ndarray, n_panels: int) -> tuple[float, float, int, int]:
-    """Figure size [inches] and grid: side by side for tall structures, one above the other for long ones."""
+    """Compute figure size [inches] and grid: side by side for tall structures, one above the other for long ones."""
     columns = n_panels if extent[0] < 2.2 * extent[1] else 1
     rows = n_panels // columns if n_panels else 1
     columns = max(1, columns)
@@ -152,7 +152,7 @@ def _draw_panel(
 
 
 def _draw_thrust(axis: Any, drawing: Drawing, model: Model, frame: Frame) -> None:
-    """Thickness grows with the force: a line through arches and columns, one stroke per joint in walls."""
+    """Draw the thrust line, as thick as the force: through arches and columns, one stroke per joint in walls."""
     from matplotlib.collections import LineCollection
 
     found = frame_measures.resultants(frame.contacts)

@@ -1,4 +1,4 @@
-"""Line charts of any two columns of one or several runs: a curve for each, a panel for each unit."""
+"""Draw line charts of any two columns of one or several runs: a curve for each, a panel for each unit."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MOST_BESIDE = 16  # names in a legend at the side
 
 
 class FamilyMember(NamedTuple):
-    """A run of a family."""
+    """Run of a family of curves."""
 
     name: str  # as the legend has it
     value: Any  # by which it is coloured
@@ -30,7 +30,7 @@ class FamilyMember(NamedTuple):
 
 
 class Curve(NamedTuple):
-    """One line of a chart."""
+    """Curve of a chart."""
 
     member: FamilyMember
     column: str  # of y
@@ -47,7 +47,7 @@ def draw_curves(
     title: str,
     family: str = "",
 ) -> None:
-    """One line per run and column of y. `family`: what the values are by which runs are coloured.
+    """Draw one line per run and column of y. `family`: the key whose values colour the runs.
 
     Raises UsageError where a run lacks a column.
     """
@@ -112,7 +112,7 @@ def _draw_panel(
 
 
 def _in_common(words: list[str], label: str) -> str:
-    """What several columns have in common: how their names begin, and their unit."""
+    """Find the common beginning of the names of several columns, with their unit."""
     same = takewhile(lambda row: len(set(row)) == 1, zip(*(text.replace(",", "").split() for text in words)))
     start = " ".join(row[0] for row in same)
     unit = f"[{label.rsplit(' [', 1)[1]}" if label.endswith("]") else ""
@@ -120,7 +120,7 @@ def _in_common(words: list[str], label: str) -> str:
 
 
 def _fit_heights(axis: Any, limits: tuple[float, float]) -> None:
-    """What lies between the limits of x fills the panel."""
+    """Scale the y axis to the data between the limits of x."""
     seen = [line.get_ydata()[(line.get_xdata() >= limits[0]) & (line.get_xdata() <= limits[1])] for line in axis.lines]
     inside = np.concatenate(seen)
     inside = inside[np.isfinite(inside)]
@@ -133,7 +133,7 @@ def _legend(
     figure: Any, axes: Any, members: Sequence[FamilyMember], keys: chart.FamilyColours, ys: Sequence[str],
     quantities: dict[str, Quantity], family: str,
 ) -> None:  # fmt: skip
-    """Runs by colour, columns by colour where there is one run, else by dashes."""
+    """Draw the legend: runs by colour; columns by colour where there is one run, else by dashes."""
     from matplotlib.lines import Line2D
 
     alone = len(keys.values) == 1

@@ -1,4 +1,4 @@
-"""energy.png: the energy ledger over the run, against time, displacement or, where neither grows, the solver step."""
+"""Draw energy.png: the energy balance over the run, against time, displacement or the solver step."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _BY_DISPLACEMENT = ("pushover", "settlement")  # kinds whose structures go on an
 
 
 class Across(NamedTuple):
-    """The axis along a ledger."""
+    """Horizontal axis of an energy balance."""
 
     column: str  # of the history, and of frames
     factor: float  # to the unit that is drawn
@@ -39,7 +39,7 @@ class Across(NamedTuple):
 
 
 def draw_energy(results: Results, path: Path) -> None:
-    """Every entry of the ledger that is not zero."""
+    """Draw every term of the energy balance that is not zero."""
     history = results.history
     shaken = history["stage"] == "shaking"
     rows = np.flatnonzero(shaken) if shaken.any() else np.arange(len(shaken))
@@ -61,11 +61,11 @@ def draw_energy(results: Results, path: Path) -> None:
         handles, _ = axis.get_legend_handles_labels()
         if handles:
             figure.legend(loc="outside right center")
-        figure.suptitle("Energy ledger", x=0.01, ha="left", fontsize=12, fontweight="bold")
+        figure.suptitle("Energy balance", x=0.01, ha="left", fontsize=12, fontweight="bold")
 
 
 def across(results: Results) -> Across:
-    """Horizontal axis of the energy ledger: time, displacement where that grows, else the solver step."""
+    """Choose the horizontal axis of the energy balance: time, displacement where that grows, else the solver step."""
     history = results.history
     if (history["stage"] == "shaking").any():
         return Across("time", 1.0, "time [s]")
@@ -76,6 +76,6 @@ def across(results: Results) -> Across:
 
 
 def _in_order(results: Results) -> list[tuple[str, np.ndarray]]:
-    """Entries in the order of the colours, then those that have none."""
+    """Order the terms of the energy balance by their colours, then those without one."""
     names = [*_COLOURS, *(name for name in results.energy if name not in _COLOURS)]
     return [(name, results.energy[name]) for name in names if name in results.energy]

@@ -1,4 +1,4 @@
-"""fragility.png: share of records that a structure does not survive, against intensity (thesis Figure 6-8)."""
+"""Draw fragility.png: share of records that a structure does not survive, against intensity (thesis Figure 6-8)."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _FIT, _BAND, _STEPS, _LEVELS = "#1f5fa8", "#c9daec", style.INK, "#e08214"
 
 
 def has_curve(results: Results) -> bool:
-    """Whether there is anything to draw."""
+    """Test whether the results have a fragility curve."""
     return results.kind == "fragility" and bool(results.summary.get("collapse_intensities"))
 
 
 def draw_fragility(results: Results, path: Path) -> None:
-    """Steps of the collapse intensities found, the lognormal fit with its confidence, shares of a grid as points."""
+    """Draw collapse intensities as steps, the lognormal fit with its confidence, shares at given levels as points."""
     summary = results.summary
     with style.figure(path, figsize=(7.2, 4.6)) as figure:
         axis = figure.add_subplot()
@@ -51,7 +51,7 @@ def _draw_fit(axis: Any, summary: Mapping[str, Any]) -> None:
 
 
 def _draw_steps(axis: Any, summary: Mapping[str, Any]) -> None:
-    """Cumulative share of collapse intensities; records that never collapsed count as not reached."""
+    """Draw the cumulative share of collapse intensities; records without collapse count as not reached."""
     repeats = summary.get("repeats")
     rows = repeats["collapse_intensities"] if repeats else [[a] for a in summary["collapse_intensities"]]
     values = [np.inf if a is None else a for row in rows for a in row]
@@ -68,7 +68,7 @@ def _draw_steps(axis: Any, summary: Mapping[str, Any]) -> None:
 
 
 def _draw_levels(axis: Any, summary: Mapping[str, Any]) -> None:
-    """Share that collapsed at each level: below the steps where structures survived above a collapse."""
+    """Draw the share that collapsed at each level, below the steps where structures survived above a collapse."""
     tried = zip(summary.get("levels") or (), summary.get("share") or ())
     levels = [(level, share) for level, share in tried if share is not None]
     if levels:

@@ -1,4 +1,4 @@
-"""Joint resultants, thrust lines and displacements of a frame, and a scale that shows them."""
+"""Joint resultants, thrust lines and displacements of a frame, and a visible scale of displacements."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LARGEST_TURN = 0.35  # rad, of a drawn rotation
 
 @dataclass(frozen=True)
 class Resultants:
-    """Resultant forces of a frame: one per joint that is pressed, for the thrust line."""
+    """Resultant forces of a frame: one per pressed joint, for the thrust line."""
 
     points: np.ndarray  # centre of pressure [m], (n, d)
     forces: np.ndarray  # force on the second block [N], (n, d)
@@ -26,7 +26,7 @@ class Resultants:
 
 
 def resultants(contacts: ContactRecord) -> Resultants:
-    """Force of each joint at the force-weighted mean of its points."""
+    """Compute the resultant of each joint at the force-weighted mean of its points."""
     pressed = (contacts.state != STATES.index("open")) & (contacts.normal_force > 0.0)
     joints, first, owner = np.unique(contacts.joint[pressed], return_index=True, return_inverse=True)
     weights = contacts.normal_force[pressed]
@@ -42,7 +42,7 @@ def resultants(contacts: ContactRecord) -> Resultants:
 
 
 def chains(model: Model, found: Resultants) -> list[np.ndarray]:
-    """Joints in the order in which the thrust runs through them; [] where it branches (walls).
+    """Order the joints along the thrust line; [] where it branches (walls).
 
     Arches and columns: every free block has at most two pressed joints.
     """
@@ -76,7 +76,7 @@ def _walk(links: dict[int, list[int]]) -> list[np.ndarray]:
 
 
 def block_reach(model: Model, pairs: np.ndarray) -> np.ndarray:
-    """Half the smaller extent of the smaller block at each joint [m]."""
+    """Return half the smaller extent of the smaller block at each joint [m]."""
     extents = np.full(model.n_blocks, np.inf)
     for part, block in enumerate(model.part_blocks):
         corners = model.vertices[model.part_starts[part] : model.part_starts[part + 1]]
@@ -85,7 +85,7 @@ def block_reach(model: Model, pairs: np.ndarray) -> np.ndarray:
 
 
 def size(model: Model) -> float:
-    """Diagonal of the box around the blocks that can move [m]."""
+    """Return the diagonal of the box around the movable blocks [m]."""
     corners = rest_vertices(model)
     free = ~model.fixed[model.vertex_blocks]
     corners = corners[free] if free.any() else corners
@@ -93,13 +93,13 @@ def size(model: Model) -> float:
 
 
 def largest_displacement(model: Model, frame: Frame) -> float:
-    """Of any corner of any block [m]."""
+    """Return the largest displacement of any corner of any block [m]."""
     moved = placed_vertices(model, frame.positions, frame.orientations)
     return float(np.linalg.norm(moved - rest_vertices(model), axis=1).max())
 
 
 def visible_scale(model: Model, frame: Frame) -> float:
-    """Factor on displacements: 1 where they can be seen, else a round number that makes them visible."""
+    """Return the scale of displacements: 1 where they are visible, else a round number that makes them so."""
     moved = largest_displacement(model, frame)
     whole = size(model)
     if moved >= _TRUE_FROM * whole or moved <= 0.0:
@@ -111,7 +111,7 @@ def visible_scale(model: Model, frame: Frame) -> float:
 
 
 def scaled(model: Model, frame: Frame, scale: float) -> Frame:
-    """The frame with displacements, rotations and the places of the contact points times `scale`."""
+    """Scale the displacements, rotations and contact points of a frame."""
     positions = model.centroids + scale * (frame.positions - model.centroids)
     orientations = quaternions(scale * rotation_vectors(frame.orientations))
     contacts = frame.contacts

@@ -1,4 +1,4 @@
-"""histories.png: the motion of the base above, below it the monitors of a time history, a panel per quantity."""
+"""Draw histories.png: the base motion above, the monitors of a time history below, a panel per quantity."""
 
 from __future__ import annotations
 
@@ -53,17 +53,17 @@ def draw_histories(results: Results, path: Path) -> None:
 
 
 def of_quantity(series: HistorySeries, quantity: str) -> dict[str, np.ndarray]:
-    """All monitors of one quantity, by name."""
+    """Return all monitors of one quantity, by name."""
     return {name: values for name, values in series.monitors.items() if series.quantities[name] == quantity}
 
 
 def base_colours(series: HistorySeries) -> list[str]:
-    """Of the components of the base: x, in space y as well, and what is upwards."""
+    """Return the colours of the base components: x, in space y as well, and the vertical one."""
     return [*(style.INK, style.THRUST)[: series.base.shape[2] - 1], style.GREY]
 
 
 def _draw_base(axis: Any, series: HistorySeries) -> None:
-    """Acceleration in every direction that has one."""
+    """Draw the base acceleration in every direction where it is not zero."""
     for i, name in enumerate("xyz"[: series.base.shape[2]]):
         values = series.base[:, 0, i]
         if (values != 0.0).any():
@@ -95,7 +95,7 @@ def _draw_panel(
 
 
 def curve(time: np.ndarray, values: np.ndarray, quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """The points of a line, thinned; a rotation vector that goes on the other way round leaves a break, nan."""
+    """Return the points of a line, thinned; a rotation vector that wraps around leaves a break, nan."""
     x, y = thinned(time, values)
     if quantity != "rotation":
         return x, y
@@ -104,7 +104,7 @@ def curve(time: np.ndarray, values: np.ndarray, quantity: str) -> tuple[np.ndarr
 
 
 def thinned(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Fewer points that draw the same line: the lowest and the highest of every stretch, in their order."""
+    """Thin a line without visible change: the lowest and the highest point of every stretch, in order."""
     n = len(time)
     if n <= _MOST_POINTS:
         return time, values

@@ -1,4 +1,4 @@
-"""joints.png: how wide joints are open, over their height (as thesis Figure 7-72 and Table 7-7 ask)."""
+"""Draw joints.png: joint openings over their height (as in thesis Figure 7-72 and Table 7-7)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ GROUPS = (
 
 
 def draw_joints(results: Results, path: Path) -> None:
-    """Of the last frame: every open joint, and how many there are at each height."""
+    """Draw every open joint of the last frame, and their number at each height."""
     joints = joints_of(results)
     last, states, steep = results.frames[-1], joints.at(len(results.frames) - 1), steepness(joints)
     widths, heights = states.opening, joints.places.middles()[:, -1]
@@ -43,7 +43,7 @@ def draw_joints(results: Results, path: Path) -> None:
 
 
 def _draw_counts(axis: Any, heights: np.ndarray, size: float) -> None:
-    """A bar for each height at which joints are."""
+    """Draw a bar for each height at which there are joints."""
     rounded = np.round(heights / (SAME_HEIGHT * size)) if size > 0.0 else heights
     levels, counts = np.unique(rounded, return_counts=True)
     levels = levels * SAME_HEIGHT * size

@@ -9,17 +9,17 @@ from typing import Any, NamedTuple
 
 from dem_cli.errors import UsageError
 
-Describe = Callable[[str], tuple[str, str]]  # a key of the case file -> its meaning and unit; "" where nobody knows
+Describe = Callable[[str], tuple[str, str]]  # a key of the case file -> its meaning and unit; "" where unknown
 
 
 class Quantity(NamedTuple):
-    """Quantity of a column: what it holds."""
+    """Physical quantity of a column, in words and with its unit."""
 
     words: str
     unit: str = ""
 
     def label(self, unit: str | None = None) -> str:
-        """For an axis; `unit` where values are shown in another one."""
+        """Return the axis label; `unit` where values are shown in another one."""
         shown = _UNITS.get(unit or self.unit, unit or self.unit)
         return f"{self.words} [{shown}]" if shown else self.words
 
@@ -81,7 +81,7 @@ _MOST_WORDS = 46  # letters of a meaning that still fits an axis
 
 
 def of_output(name: str, units: Mapping[str, Any]) -> Quantity:
-    """A column of results by its path in the summary; `units`: what its ".unit" columns hold, by their names."""
+    """Describe a column of results by its path in the summary; `units`: values of the ".unit" columns."""
     if name in KNOWN_QUANTITIES:
         return KNOWN_QUANTITIES[name]
     if match := re.fullmatch(r"(joint_state|after_collapse)\.(\w+)\.value", name):
@@ -97,7 +97,7 @@ def of_output(name: str, units: Mapping[str, Any]) -> Quantity:
 
 
 def of_key(key: str, describe: Describe | None) -> Quantity:
-    """A key of the case file; what is no name of its kind but the user's is added, as in "friction (dry)"."""
+    """Describe a key of the case file, with the name given by the user, as in "friction (dry)"."""
     steps = [step.strip("\"'") for step in re.findall(r'"[^"]*"|[^.]+', key)]
     meaning, unit = describe(key) if describe else ("", "")
     meaning = re.split(r"[;:(,]| instead of ", meaning.replace(" tan(φ)", " tan φ"))[0].strip()
@@ -110,12 +110,12 @@ def of_key(key: str, describe: Describe | None) -> Quantity:
 
 
 def plain(name: str) -> str:
-    """A name as people may type it: capitals and underscores do not matter."""
+    """Normalise a typed name: capitals and underscores do not matter."""
     return name.lower().replace("_", " ").strip()
 
 
 def nearest(name: str, names: list[str]) -> str | None:
-    """The column that `name` means, or None."""
+    """Return the column that `name` means, or None."""
     if name in names:
         return name
     alike = [one for one in names if plain(one) == plain(name)]
@@ -123,7 +123,7 @@ def nearest(name: str, names: list[str]) -> str | None:
 
 
 def unknown(name: str, names: list[str]) -> UsageError:
-    """One message, with the nearest name."""
+    """Create the error of an unknown column, with the nearest name."""
     close = get_close_matches(plain(name), list(map(plain, names)), 1, 0.5)
     inside = [one for one in names if plain(name) in plain(one)]
     found = next((one for one in names if close and plain(one) == close[0]), inside[0] if inside else None)

@@ -1,4 +1,4 @@
-"""Heat map of a sweep over two keys: numbers as colours with their values, words as areas of one colour each."""
+"""Draw a heat map of a sweep over two keys: numbers as colours with their values, text as areas of one colour."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from dem_cli.results.post.sweep_table import SweepTable, distinct, is_answer_in_
 
 _MOST_NUMBERS = 160  # cells that are small enough to be read
 _DARK = 0.55  # luminance below which numbers are white
-_BOTH = 0.05  # of the largest value: less on the other side of zero is nothing
+_BOTH = 0.05  # of the largest value: less on the other side of zero is neglected
 _AREAS = ("#5aa0d8", "#e0a458", "#8fbf8f", "#b39ddb", "#d98cb3", "#c9c4ba")
 _TRUTHS = {"collapsed": {False: "stands", True: "falls"}}  # what truths of a column are called
 _MOST_TICKS = 16  # names along a side
@@ -26,7 +26,7 @@ _FULL = 0.5  # of the cells must have a run, else the keys are no grid
 def draw_map(
     table: SweepTable, x: str, y: str, z: str, path: Path, options: ChartOptions, quantities: Mapping[str, Quantity]
 ) -> None:
-    """z over the keys x and y. Raises UsageError where other keys vary too: which of their values is meant?"""
+    """Draw z over the keys x and y. Raises UsageError where other keys vary too: their value is ambiguous."""
     others = [key for key in table.ranked() if key not in (x, y)]
     if others and len({(table.columns[x][i], table.columns[y][i]) for i in range(table.count)}) < table.count:
         raise UsageError(f"--map has two keys; choose of the others with --where {others[0]}=VALUE")
@@ -75,7 +75,7 @@ def _draw_cells(
 
 
 def _ticks(values: list[Any]) -> tuple[np.ndarray, list[str]]:
-    """Where the names of the values of a key stand, and these: not all where they are many."""
+    """Return places and names of the tick labels of a key: not all where they are many."""
     every = max(1, -(-len(values) // _MOST_TICKS))
     return np.arange(0, len(values), every) + 0.5, [shown(v) for v in values[::every]]
 
@@ -94,14 +94,14 @@ def _write_numbers(axis: Any, values: np.ndarray, mesh: Any) -> None:
 
 
 def _number(v: float, digits: int) -> str:
-    """As many decimals as all others; none too long for its cell."""
+    """Format a number with the common number of decimals; none too long for its cell."""
     text = f"{v:.{digits}f}"
     text = text.lstrip("-") if float(text) == 0.0 else text
     return (text if len(text) <= 8 else f"{v:.2e}").replace("-", "−")
 
 
 def _draw_points(figure: Any, axis: Any, table: SweepTable, names: tuple[str, str, str], quantity: Quantity) -> None:
-    """Of keys that are no grid: a point per run."""
+    """Draw a point per run, for keys that form no grid."""
     if not all(numeric(table.columns[name]) for name in names):
         raise UsageError("--map of points needs numbers: these keys are no grid")
     columns = [np.array([np.nan if v is None else v for v in table.columns[name]], float) for name in names]
@@ -118,7 +118,7 @@ def _draw_points(figure: Any, axis: Any, table: SweepTable, names: tuple[str, st
 
 
 def _scale(words: list[Any], values: np.ndarray) -> tuple[Any, dict[str, float]]:
-    """Colour map and its limits: a colour for each word; around zero where there are values on both sides of it."""
+    """Return the colour map and its limits: a colour per text value; symmetric for values on both sides of zero."""
     from matplotlib import colormaps
     from matplotlib.colors import ListedColormap
 

@@ -1,4 +1,4 @@
-"""modes.png: natural modes, each with its frequency and the share of the mass that it moves."""
+"""Draw modes.png: natural modes, each with its frequency and effective mass."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _WIDEST, _HIGHEST = 10.5, 2.9  # inches: of the picture, of a panel
 
 
 def draw_modes(results: Results, path: Path, asked: Standpoint = AS_BEST) -> None:
-    """A panel for each mode, as large as its frame has it; dashed: undeformed."""
+    """Draw a panel for each mode at the scale of its frame; dashed: undeformed."""
     model, frames = results.model, shapes(results)
     drawing = drawing_of(model, frames[0], asked)
     corners = [placed_vertices(model, frame.positions, frame.orientations) for frame in frames]
@@ -46,7 +46,7 @@ def draw_modes(results: Results, path: Path, asked: Standpoint = AS_BEST) -> Non
 
 
 def shapes(results: Results) -> list[Frame]:
-    """The frames that show modes, the first of them."""
+    """Return the frames of the first modes."""
     found: list[Frame] = [frame for frame in results.frames if frame.stage == STAGE]
     return found[:MOST_MODES]
 
@@ -62,7 +62,7 @@ def _panel_title(summary: Mapping[str, Any], number: int) -> str:
 
 
 def _layout(extent: Any, n_panels: int) -> tuple[float, float, int, int]:
-    """Figure size [inches] and grid: as many side by side as fit."""
+    """Compute figure size [inches] and grid: as many panels side by side as fit."""
     height = min(_HIGHEST, 0.5 * _WIDEST * extent[1] / extent[0])
     width = max(height * extent[0] / extent[1], 1.5)
     columns = max(1, min(n_panels, int(_WIDEST / width)))

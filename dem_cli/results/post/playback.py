@@ -1,4 +1,4 @@
-"""Playback of frames as a movie: which of them are shown, and how long; time histories run as fast as they did."""
+"""Playback of frames as a movie: their choice and duration; time histories run in real time."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ SHORTEST = 0.02  # s: players slow down what is shorter
 
 
 class Playback(NamedTuple):
-    """The pictures of a movie."""
+    """Frames of a movie and their durations."""
 
     frames: list[Frame]
     stays: list[float]  # s that each is shown, but for the last one
 
 
 def playback(results: Results, each: float | None = None) -> Playback:
-    """All frames of a run that can be told apart. each: seconds that one stays; None: as long as it took, or EACH."""
+    """Choose the distinguishable frames of a run. each: duration of one [s]; None: real time, or EACH."""
     frames = list(results.frames)
     if not kind_of(results.kind).timed or each is not None:
         return Playback(frames, [each or EACH] * len(frames))
@@ -32,7 +32,7 @@ def playback(results: Results, each: float | None = None) -> Playback:
 
 
 def _apart(times: list[float], farthest: int) -> list[int]:
-    """Frames that are not too close for a movie; the first, the farthest and the last are among them."""
+    """Select frames that are not too close for a movie, always with the first, the farthest and the last."""
     shown = [0]
     for i in range(1, len(times)):
         if times[i] - times[shown[-1]] >= SHORTEST:
@@ -43,7 +43,7 @@ def _apart(times: list[float], farthest: int) -> list[int]:
 
 
 def ticks(stays: list[float], least: float = 12.5, most: float = 50.0) -> tuple[float, list[int]]:
-    """Frames per second of a movie that has one rate, and the picture that each of its frames shows."""
+    """Compute the frame rate of a movie at constant rate, and the picture that each of its frames shows."""
     rate = float(np.clip(1.0 / np.median(stays), least, most))
     ends = np.cumsum(stays)
     instants = (np.arange(max(1, round(ends[-1] * rate))) + 0.5) / rate
@@ -51,6 +51,6 @@ def ticks(stays: list[float], least: float = 12.5, most: float = 50.0) -> tuple[
 
 
 def milliseconds(stays: list[float]) -> list[int]:
-    """How long a GIF shows its pictures, in its steps of 10 ms; what is rounded off one is given to the next."""
+    """Round the durations of GIF pictures to 10 ms; the rounding error of one is carried to the next."""
     ends = 10.0 * np.rint(100.0 * np.cumsum(stays))
     return np.maximum(np.diff(ends, prepend=0.0), 10.0).astype(int).tolist()

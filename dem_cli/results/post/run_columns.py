@@ -1,4 +1,4 @@
-"""The columns of a run by name: the history of the solver, time histories, response spectra, a fragility curve."""
+"""Columns of a run by name: solver history, time histories, response spectra, fragility curve."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class ColumnTable(NamedTuple):
 
 
 def tables(results: Results) -> list[ColumnTable]:
-    """All of a run; the one that most people want comes first."""
+    """Return all tables of a run; the most useful one comes first."""
     found = [_history(results)] if len(results.history.get("step", ())) else []
     if results.series is not None and len(results.series.time) > 1:
         series = [_series(results.series), _spectra(results.series)]
@@ -78,13 +78,13 @@ def _series(series: HistorySeries) -> ColumnTable:
 
 
 def _base(series: HistorySeries) -> dict[str, tuple[int, int]]:
-    """Components of the motion of the base that are not always zero."""
+    """Return the components of the base motion that are not always zero."""
     places = [(i, k) for i in range(len(BASE)) for k in range(series.base.shape[2])]
     return {f"base {BASE[i]} {_AXES[k]}": (i, k) for i, k in places if series.base[:, i, k].any()}
 
 
 def _spectra(series: HistorySeries) -> ColumnTable:
-    """Pseudo-acceleration of the base motion, and of places on the structure whose absolute acceleration is known."""
+    """Compute response spectra: pseudo-acceleration of the base, and of monitors of absolute acceleration."""
     sources = {
         f"{SPECTRAL} {name.split()[-1]}": series.base[:, i, k] for name, (i, k) in _base(series).items() if i == 0
     }
@@ -109,7 +109,7 @@ def _spectra(series: HistorySeries) -> ColumnTable:
 
 
 def find(found: Sequence[ColumnTable], names: Sequence[str]) -> tuple[ColumnTable, list[str]]:
-    """The first table that has all these columns, and their exact names. Raises UsageError."""
+    """Find the first table that has all these columns, and their exact names. Raises UsageError."""
     for table in found:
         exact = [nearest(name, list(table.quantities)) for name in names]
         if all(exact):
@@ -124,7 +124,7 @@ def find(found: Sequence[ColumnTable], names: Sequence[str]) -> tuple[ColumnTabl
 
 
 def usual(results: Results) -> tuple[str, list[str]] | None:
-    """Usual columns of the chart of a run: names for x and y; None where it has no curve."""
+    """Return the usual columns of the chart of a run: names for x and y; None where it has no curve."""
     found = tables(results)
     if not found:
         return None

@@ -1,4 +1,4 @@
-"""The pictures of a run, drawn from its results only."""
+"""Draw the pictures of a run from its results."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ PICTURES: dict[str, Callable[..., None]] = {  # of results, into a file; some fr
 }
 SEEN_FROM = frozenset(("modes.png", "collapse.png"))  # those that show the structure
 ANIMATION = "collapse.gif"
-JOINTS = "joints.png"  # only where it is asked for
+JOINTS = "joints.png"  # only on request
 
 
 def draw_all(folder: Path, output: Path, animate: bool = False, asked: Standpoint = AS_BEST) -> list[Path]:
@@ -56,7 +56,7 @@ def draw_all(folder: Path, output: Path, animate: bool = False, asked: Standpoin
 
 
 def draw_one(folder: Path, name: str, path: Path, asked: Standpoint = AS_BEST) -> None:
-    """One of the pictures, into a file of any format of matplotlib. Raises UsageError where it has no data."""
+    """Draw one picture into a file of any matplotlib format. Raises UsageError where it has no data."""
     results = read(folder)
     if name == JOINTS:
         draw_joints(results, path)
@@ -67,7 +67,7 @@ def draw_one(folder: Path, name: str, path: Path, asked: Standpoint = AS_BEST) -
 
 
 def has_data(name: str, results: Results) -> bool:
-    """Whether there is anything to draw; a capacity curve needs a load that changes."""
+    """Test whether the results have data for a picture; a capacity curve needs a load that changes."""
     no_rows = np.zeros(0)
     if name == "fragility.png":
         return has_curve(results)

@@ -1,4 +1,4 @@
-"""safety.png: the runs of a safety analysis, what stands and what fails, and how long each took to be proven."""
+"""Draw safety.png: the runs of a safety analysis, whether they stand or fail, and the steps of their proofs."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _WIDE = 3.0  # ratio of factors from which their axis is logarithmic
 
 
 def has_runs(results: Results) -> bool:
-    """Whether there is anything to draw."""
+    """Test whether the results have runs of a safety analysis."""
     return results.kind == "safety" and bool(results.summary.get("runs"))
 
 
 def draw_safety(results: Results, path: Path) -> None:
-    """Solver steps against the value; two panels where the runs next to the answer lie on top of each other."""
+    """Draw solver steps against the value; two panels where the runs next to the answer overlap."""
     summary, runs = results.summary, results.summary["runs"]
     values = [run["value"] for run in runs]
     near = _next_to_the_answer(values, summary)
@@ -55,7 +55,7 @@ def _draw_runs(axis: Any, runs: Sequence[Mapping[str, Any]]) -> None:
 
 
 def _draw_answer(axis: Any, summary: Mapping[str, Any]) -> None:
-    """The bracket, and what limit analysis proves."""
+    """Draw the bracket and the bound of limit analysis."""
     stands, fails = summary.get("stands_at"), summary.get("fails_at")
     if stands is not None and fails is not None:
         axis.axvspan(*sorted((stands, fails)), color=style.FAILURE, alpha=0.15, lw=0, label="bracket")
@@ -81,7 +81,7 @@ def _range(axis: Any, values: Sequence[float], summary: Mapping[str, Any]) -> No
 
 
 def _next_to_the_answer(values: Sequence[float], summary: Mapping[str, Any]) -> list[float] | None:
-    """The values around the bracket, where all values together hide them."""
+    """Return the values around the bracket, where all values together hide them."""
     stands, fails = summary.get("stands_at"), summary.get("fails_at")
     if stands is None or fails is None:
         return None

@@ -1,4 +1,4 @@
-"""Pictures of ground motions: response spectra beside their target, and the histories."""
+"""Draw ground motions: response spectra beside their target, and the histories."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ROWS = (("acceleration", "m/s²"), ("velocity", "m/s"), ("displacement", "m"))
 
 
 class MotionSuite(NamedTuple):
-    """The motions of one [motion] table."""
+    """Ground motions of one [motion] table."""
 
     motions: Sequence[Motion]
     target: TargetSpectrum | None = None  # what they were made to fit
@@ -31,7 +31,7 @@ class MotionSuite(NamedTuple):
 
 
 def draw_spectra(suites: Sequence[MotionSuite], path: Path, title: str = "") -> None:
-    """Pseudo-acceleration by period: every motion thin, their mean thick, the target and 90 % of it."""
+    """Draw pseudo-acceleration by period: every motion thin, their mean thick, the target and 90 % of it."""
     height = 1.0 + 3.4 * len(suites)
     with style.figure(path, figsize=(_WIDTH, height)) as figure:
         axes = figure.subplots(len(suites), 1, squeeze=False, sharex=True)[:, 0]
@@ -66,7 +66,7 @@ def _draw_suite(axis: Any, suite: MotionSuite) -> None:
 
 
 def draw_motions(suites: Sequence[MotionSuite], path: Path, title: str = "") -> None:
-    """Acceleration, velocity and displacement by time: the chosen motions in colour, the others grey behind them."""
+    """Draw acceleration, velocity and displacement by time: chosen motions in colour, the others grey behind them."""
     with style.figure(path, figsize=(_WIDTH, 5.4)) as figure:
         axes: Any = figure.subplots(3, 1, sharex=True)
         end = max(motion.duration for suite in suites for motion in suite.motions)
@@ -88,13 +88,13 @@ def draw_motions(suites: Sequence[MotionSuite], path: Path, title: str = "") -> 
 
 
 def _fitted(text: str) -> str:
-    """A title in one line: cut where it would leave the picture."""
+    """Shorten a title to one line where it would leave the picture."""
     most = int(11.0 * _WIDTH)
     return text if len(text) <= most else text[: most - 1] + "…"
 
 
 def _times(motion: Motion, end: float) -> np.ndarray:
-    """Samples close enough for the picture, and the end of the longest motion."""
+    """Return sample times close enough for the picture, and the end of the longest motion."""
     own = motion.times()
     many = own if len(own) >= CURVE_POINTS else np.linspace(motion.start, motion.duration, CURVE_POINTS)
     before = [0.0, motion.start * (1.0 - 1e-9)] if motion.start > 0.0 else []  # so that a jump is upright

@@ -1,4 +1,4 @@
-"""Plot style of all pictures: colours that everybody tells apart, one style, matplotlib without a display."""
+"""Plot style of all pictures: distinguishable colours, matplotlib without a display."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _STYLE: Any = {
 
 @contextmanager
 def figure(path: Path, **options: Any) -> Iterator[Any]:
-    """A new figure that is saved to `path` at the end of the block."""
+    """Create a figure that is saved to `path` at the end of the block."""
     with canvas() as make:
         drawn = make(**options)
         yield drawn
@@ -61,7 +61,7 @@ def figure(path: Path, **options: Any) -> Iterator[Any]:
 
 @contextmanager
 def canvas() -> Iterator[Callable[..., Any]]:
-    """Makes figures in our style, to be drawn inside the block."""
+    """Yield a function that makes figures in the common style, to be drawn inside the block."""
     try:
         import matplotlib
         from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -81,7 +81,7 @@ def canvas() -> Iterator[Callable[..., Any]]:
 
 
 def headline(figure: Any, summary: Mapping[str, Any]) -> None:
-    """Title of the run and its answer, small enough to fit on one line."""
+    """Draw the title of the run and its answer on one line."""
     load, mode = summary.get("failure_load"), summary.get("failure_mode")
     text = str(summary.get("title", ""))
     if summary.get("kind") == "limit" and summary.get("status") == "ok":
@@ -99,7 +99,7 @@ def headline(figure: Any, summary: Mapping[str, Any]) -> None:
 
 
 def number_logs(axis: Any, text: str = "{x:g}") -> None:
-    """Plain numbers along a logarithmic axis (`axes.xaxis`) that never run into each other, however short it is."""
+    """Use plain numbers along a logarithmic axis (`axes.xaxis`) that never overlap."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
     low, high = axis.get_view_interval()
@@ -110,7 +110,7 @@ def number_logs(axis: Any, text: str = "{x:g}") -> None:
 
 
 def _of_safety(summary: Mapping[str, Any]) -> str:
-    """The answer of a safety analysis."""
+    """Describe the answer of a safety analysis."""
     name = "F" if summary.get("vary") == "strength" else summary.get("vary")
     if summary.get("status") != "ok":
         return str(summary.get("status"))
@@ -118,7 +118,7 @@ def _of_safety(summary: Mapping[str, Any]) -> str:
 
 
 def length_unit(largest: float) -> tuple[float, str]:
-    """Factor from metres and unit name, so that the largest value reads well."""
+    """Return factor from metres and unit name, so that the largest value is readable."""
     if largest >= 1.0:
         return 1.0, "m"
     return (1e3, "mm") if largest >= 1e-4 else (1e6, "µm")

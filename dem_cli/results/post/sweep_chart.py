@@ -1,4 +1,4 @@
-"""Charts of a sweep: any column over any other, in families; brackets as bars, crosses where a run has neither."""
+"""Draw charts of a sweep: any column over any other, in families; brackets as bars, missing answers as crosses."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def draw_sweep(
     table: SweepTable, x: str, ys: Sequence[str], by: Sequence[str], path: Path, options: ChartOptions,
     quantities: Mapping[str, Quantity],
 ) -> None:  # fmt: skip
-    """ys over x, a line for each combination of the keys `by`; exact names of columns. quantities: of all columns."""
+    """Draw ys over x, a line for each combination of the keys `by`; exact names. quantities: of all columns."""
     families = _families(table, x, by)
     points = len(families) > max(1.0, _SCATTERED * table.count) or (x not in table.keys and not by)
     if points and len(by) > 1:  # a colour says one key
@@ -72,7 +72,7 @@ def draw_sweep(
 
 
 class _AxisPositions:
-    """Where the values of a column stand: numbers where they are, words one beside the other."""
+    """Axis positions of the values of a column: numbers at their value, text values side by side."""
 
     def __init__(self, values: Sequence[Any], factor: float = 1.0):
         self.values, self.factor = values, factor
@@ -83,7 +83,7 @@ class _AxisPositions:
         return float(self.words.index(value)) if self.words else self.factor * float(value)
 
     def dress(self, axis: Any, name: str) -> None:
-        """Words beside the ticks."""
+        """Label the ticks of text values."""
         if self.words:
             crowded = name == "x" and sum(len(shown(word)) for word in self.words) > 60
             turned = {"rotation": 20, "ha": "right"} if crowded else {}
@@ -93,7 +93,7 @@ class _AxisPositions:
 
 
 def _fitted(table: SweepTable, quantities: Mapping[str, Quantity], names: Sequence[str]) -> tuple[float, str]:
-    """Factor on columns of the same unit, and the label of their axis."""
+    """Return a common factor for columns of the same unit, and the axis label."""
     columns = [table.columns[name] for name in names if numeric(table.columns[name])]
     numbers = [np.array([v for v in column if v is not None], float) for column in columns]
     factor, label = chart.fitted(quantities[names[0]], numbers)
@@ -103,7 +103,7 @@ def _fitted(table: SweepTable, quantities: Mapping[str, Quantity], names: Sequen
 
 
 def _families(table: SweepTable, x: str, by: Sequence[str]) -> list[RunFamily]:
-    """Rows by their values of `by`; in each, by x."""
+    """Group rows by their values of `by`; in each group sorted by x."""
     found: dict[tuple[Any, ...], list[int]] = {}
     for i in range(table.count):
         if table.columns[x][i] is not None:
@@ -122,7 +122,7 @@ def _families(table: SweepTable, x: str, by: Sequence[str]) -> list[RunFamily]:
 def _look(
     family: RunFamily, keys: chart.FamilyColours, rests: Sequence[tuple[Any, ...]], ys: list[str], y: str, points: bool
 ) -> dict[str, Any]:
-    """Colour by the first key, marker by the others, dashes by column where there are several."""
+    """Return colour by the first key, marker by the others, dashes by column where there are several."""
     column, rest = ys.index(y), rests.index(family.rest)
     alone = len(keys.values) == 1 and len(rests) == 1 and len(ys) > 1
     colour = chart.COLOURS[column % len(chart.COLOURS)] if alone else keys.colour(family.first)
@@ -135,7 +135,7 @@ def _look(
 
 
 def _rank(keys: chart.FamilyColours, family: RunFamily) -> int:
-    """Number of its colour: markers tell families apart for those who see no colours."""
+    """Return the number of a family's colour, for markers that work without colours."""
     return 0 if keys.bar else keys.values.index(family.first)
 
 
@@ -147,7 +147,7 @@ def _draw_family(
     rows: Sequence[int],
     look: dict[str, Any],
 ) -> None:
-    """Points where there is an answer, joined; a bar where a bracket says how sure it is, dashed where it is all."""
+    """Draw connected points of answers, and bars of their brackets, dashed where there is no answer."""
     at, heights = places
     answered = [i for i in rows if table.columns[y][i] is not None]
     size = 5.0 if len(rows) <= 30 else 3.0
@@ -158,18 +158,18 @@ def _draw_family(
             continue
         alone = {"ls": _ALONE} if table.columns[y][i] is None else {}
         ends = [heights.factor * end for end in (low, high) if end is not None]
-        mark = "_" if high is not None else "^"  # it stands there, and nobody knows how far it goes
+        mark = "_" if high is not None else "^"  # a lower bound alone
         axis.plot([at[i]] * len(ends), ends, color=look["color"], lw=1.0, marker=mark, ms=6.0, mew=1.0, **alone)
 
 
 def _bracket(table: SweepTable, y: str, row: int) -> tuple[float | None, float | None]:
-    """Between which values the answer of a run lies; None: an end that is not known."""
+    """Return the bracket of the answer of a run; None: an unknown end."""
     low, high = (table.columns.get(f"{y}_bracket.{end}", [None] * table.count)[row] for end in (0, 1))
     return low, high
 
 
 def _mark_missing(axis: Any, table: SweepTable, at: _AxisPositions, y: str) -> bool:
-    """Crosses on the axis where a run has neither an answer nor a bracket; whether there are any."""
+    """Mark runs without answer and bracket by crosses on the axis; returns whether there are any."""
     rows = [
         i
         for i in range(table.count)
@@ -185,7 +185,7 @@ def _legend(
     figure: Any, families: Sequence[RunFamily], keys: chart.FamilyColours, rests: Sequence[tuple[Any, ...]],
     ys: Sequence[str], by: Sequence[str], quantities: Mapping[str, Quantity], gaps: tuple[bool, bool],
 ) -> None:  # fmt: skip
-    """Colours for the first key, markers for the others, dashes for columns.
+    """Draw the legend: colours for the first key, markers for the others, dashes for columns.
 
     gaps: whether there are runs that have a bracket alone, and runs that have nothing.
     """

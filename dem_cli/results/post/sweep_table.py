@@ -1,4 +1,4 @@
-"""The table of a sweep, read back: swept keys, answers, and which runs have none."""
+"""Table of a sweep, read back: swept keys, answers, and runs without one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from dem_cli.results.output.csv_cells import text_of
 from dem_cli.results.output.sweep_files import CSV, FACTS, IDENTITY_COLUMNS
 from dem_cli.results.post.labels import nearest, plain, unknown
 
-ANSWER_COLUMNS = (  # what is drawn where nobody says: the first of these that has values
+ANSWER_COLUMNS = (  # drawn by default: the first of these that has values
     "failure_load", "safety_factor", "critical_value", "median", "collapsed", "collapse_time",
 )  # fmt: skip
 
@@ -32,7 +32,7 @@ class SweepTable:
 
     @property
     def names(self) -> list[str]:
-        """All columns but those that only tell runs apart."""
+        """All columns except those that only identify runs."""
         return [name for name in self.columns if name not in IDENTITY_COLUMNS]
 
     @property
@@ -41,7 +41,7 @@ class SweepTable:
         return len(self.columns["run"])
 
     def exact(self, name: str) -> str:
-        """The column that `name` means, in full or by the end of its path. Raises UsageError."""
+        """Return the column that `name` means, in full or by the end of its path. Raises UsageError."""
         if found := nearest(name, self.names):
             return found
         ends = [one for one in self.names if plain(one).endswith(f".{plain(name)}")]
@@ -50,7 +50,7 @@ class SweepTable:
         raise unknown(name, self.names)
 
     def only(self, wanted: Mapping[str, Any]) -> SweepTable:
-        """The rows that have these values. Raises UsageError where there are none."""
+        """Return the rows that have these values. Raises UsageError where there are none."""
         exact = {self.exact(name): value for name, value in wanted.items()}
         rows = [i for i in range(self.count) if all(self.columns[name][i] == value for name, value in exact.items())]
         if not rows:
@@ -62,7 +62,7 @@ class SweepTable:
         return SweepTable(self.title, keys, kept, self.folder)
 
     def answer(self) -> str:
-        """The column that matters most. Raises UsageError."""
+        """Return the most important column. Raises UsageError."""
         peaks = [name for name in self.names if name.startswith("peaks.") and name.endswith(".peak")]
         values = [name for name in self.names if name.startswith("monitors.") and name.endswith(".value")]
         for name in (*ANSWER_COLUMNS, *peaks, *values):
@@ -73,18 +73,18 @@ class SweepTable:
         raise UsageError(f"{self.folder / CSV}: {why}")
 
     def ranked(self) -> list[str]:
-        """Swept keys with more than one value: numbers before words, most values first."""
+        """Return the swept keys with more than one value: numbers before text, most values first."""
         varied = [key for key in self.keys if len(distinct(self.columns[key])) > 1]
         return sorted(varied, key=lambda key: (not numeric(self.columns[key]), -len(distinct(self.columns[key]))))
 
 
 def is_sweep(folder: Path) -> bool:
-    """Whether a folder holds a sweep."""
+    """Test whether a folder contains a sweep."""
     return (folder / CSV).is_file() or (folder / FACTS).is_file()
 
 
 def read_sweep(folder: Path) -> SweepTable:
-    """The table in a folder. Raises UsageError, and DamagedResults where it is not what a sweep writes."""
+    """Read the table of a sweep. Raises UsageError, and DamagedResults for a damaged one."""
     try:
         facts = read_facts(folder)
         names, *rows = list(csv.reader(io.StringIO(_text(folder, CSV), newline=""))) or [[]]
@@ -113,7 +113,7 @@ def read_sweep(folder: Path) -> SweepTable:
 
 
 def read_facts(folder: Path) -> dict[str, Any]:
-    """What sweep.json says; {} where there is none. Raises DamagedResults."""
+    """Read sweep.json; {} where there is none. Raises DamagedResults."""
     if not (folder / FACTS).exists():
         return {}
     try:
@@ -129,7 +129,7 @@ def read_facts(folder: Path) -> dict[str, Any]:
 
 
 def _text(folder: Path, name: str) -> str:
-    """Text of a file of a sweep. Raises DamagedResults, UsageError, and FileNotFoundError."""
+    """Read the text of a file of a sweep. Raises DamagedResults, UsageError, and FileNotFoundError."""
     try:
         return read_bounded(folder / name, TABLE_BYTES).decode("utf-8")
     except FileNotFoundError:
@@ -141,7 +141,7 @@ def _text(folder: Path, name: str) -> str:
 
 
 def value(text: str) -> Any:
-    """Value of a cell of a sweep's table: a number, a truth, a word, or nothing."""
+    """Parse a cell of a sweep's table: a number, a truth value, text, or nothing."""
     if text in ("", "true", "false"):
         return {"": None, "true": True, "false": False}[text]
     try:
@@ -151,23 +151,23 @@ def value(text: str) -> Any:
 
 
 def numeric(values: Sequence[Any]) -> bool:
-    """Whether all that is there are numbers or truths."""
+    """Test whether all given values are numbers or truth values."""
     return all(isinstance(v, (int, float)) for v in values if v is not None)
 
 
 def distinct(values: Sequence[Any]) -> list[Any]:
-    """Different values that are there: numbers by size, words as they come."""
+    """Return the different given values: numbers sorted, text in order."""
     found = list(dict.fromkeys(v for v in values if v is not None))
     return sorted(found) if numeric(found) else found
 
 
 def is_answer_in_words(values: Sequence[Any]) -> bool:
-    """Whether a column holds words, or truths."""
+    """Test whether a column contains text or truth values."""
     return not numeric(values) or all(isinstance(v, bool) for v in values if v is not None)
 
 
 def shown(v: Any) -> str:
-    """A value as a legend has it."""
+    """Format a value for a legend."""
     if isinstance(v, bool):
         return "yes" if v else "no"
     return f"{v:.6g}" if isinstance(v, float) else "–" if v is None else str(v)

@@ -1,4 +1,4 @@
-"""Figures whose text is drawn as it stands: what a user calls a run or a joint is no formula, whatever `$` it holds."""
+"""Figures with verbatim text: names of runs or joints are never formulas, whatever `$` they contain."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class VerbatimFigure(Figure):
-    """A figure whose logarithmic axes need no formulas either."""
+    """Figure whose logarithmic axes need no formulas either."""
 
     def draw(self, renderer: Any) -> None:
-        """As every figure, once its axes are numbered in plain letters."""
+        """Draw the figure after its axes are numbered in plain letters."""
         for axes in self.axes:
             for axis in (axes.xaxis, axes.yaxis):
                 for kind in ("major", "minor"):
@@ -30,6 +30,6 @@ class PowerFormatter(LogFormatterSciNotation):
     """Numbers at a logarithmic axis: 10³ instead of a formula for it."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
-        """The number beside a tick, its exponent raised."""
+        """Return the number beside a tick with its exponent raised."""
         text = super().__call__(x, pos).replace(r"$\mathdefault{", "").replace("}$", "").replace(r"\times", "×")
         return re.sub(r"\^\{(-?\d+)\}", lambda found: found[1].translate(RAISED), text)

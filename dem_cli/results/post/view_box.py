@@ -1,4 +1,4 @@
-"""View box of an animation: what part of space it shows, and whether the ground moves in it."""
+"""View box of an animation: the part of space that it shows, and whether the ground moves in it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _GROUND = 0.06  # of the size of what is seen: half the ground that is shown bes
 
 
 def carried(results: Results, scale: float) -> bool:
-    """Whether blocks are drawn in space: the base moves, but not out of the picture, and nothing is exaggerated."""
+    """Test whether blocks are drawn moving with the base, without leaving the picture or being exaggerated."""
     series = results.series
     if series is None or scale != 1.0 or not len(series.time):
         return False
@@ -29,20 +29,20 @@ def carried(results: Results, scale: float) -> bool:
 
 
 def ground(series: HistorySeries | None, frame: Frame) -> np.ndarray:
-    """How far the ground has moved at a frame [m], (d,)."""
+    """Return the ground displacement at a frame [m], (d,)."""
     if series is None:
         return np.zeros(frame.positions.shape[1])
     return np.array([np.interp(frame.time, series.time, path) for path in series.base[:, 2].T])
 
 
 def corners(model: Model, frame: Frame, scale: float, moved: np.ndarray | float = 0.0) -> np.ndarray:
-    """Corners as drawn: displacements times `scale`, all of it `moved` along [m], (n_vertices, d)."""
+    """Compute the corners as drawn: displacements times `scale`, all `moved` along [m], (n_vertices, d)."""
     shown = frame_measures.scaled(model, frame, scale)
     return placed_vertices(model, shown.positions, shown.orientations) + moved
 
 
 def window(model: Model, places: Sequence[np.ndarray], around: float = _GROUND) -> tuple[np.ndarray, np.ndarray]:
-    """What all pictures show: wherever free blocks come, but not far away; of the ground what is near.
+    """Compute the common limits of all pictures: all places of free blocks, not far away, and the nearby ground.
 
     around: empty space on all sides, over the size of what is seen.
     """

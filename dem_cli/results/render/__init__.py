@@ -1,1 +1,1 @@
-"""Rendered pictures and movies of results, by VTK."""
+"""Render pictures and movies of results with VTK."""

@@ -1,4 +1,4 @@
-"""Colours of rendered blocks by what they do, and the legend of joints and forces."""
+"""Colours of rendered blocks by displacement, velocity or rotation, and the legend of joints and forces."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MAP, _FROM, _TO = "YlGnBu", 0.03, 0.8  # light where nothing happens; not so da
 def colours(
     results: Results, frames: Sequence[Frame], quantity: str
 ) -> tuple[list[np.ndarray] | None, ColourBar | None]:
-    """Colours of the blocks in every frame, (n_blocks, 3) each, and their scale; None of either for stone.
+    """Return the colours of the blocks in every frame, (n_blocks, 3) each, and their scale; None of either for stone.
 
     Fixed blocks stay the colour of the ground. Raises UsageError for velocities that are not per second.
     """
@@ -44,7 +44,7 @@ def colours(
 
 
 def block_values(model: Model, frame: Frame, quantity: str) -> np.ndarray:
-    """How far or fast the centroid of each block moved [m, m/s], or how far it turned [deg], (n_blocks,)."""
+    """Compute displacement or velocity of each centroid [m, m/s], or rotation of each block [deg], (n_blocks,)."""
     d = model.dimension
     if quantity == "displacement":
         return np.linalg.norm(frame.positions - model.centroids, axis=1)
@@ -62,7 +62,7 @@ def _label(quantity: str, highest: float, shaken: bool) -> tuple[float, str]:
 
 
 def legend(results: Results, frames: Sequence[Frame], joints: bool, forces: str | None) -> list[Any]:
-    """Handles for matplotlib: what the colours of joints and the strokes of forces mean."""
+    """Return matplotlib handles for the colours of joints and the strokes of forces."""
     from matplotlib.lines import Line2D
 
     found = []
@@ -82,7 +82,7 @@ def legend(results: Results, frames: Sequence[Frame], joints: bool, forces: str 
 
 
 def legend_of_links(frames: Sequence[Frame]) -> list[Any]:
-    """Handles for matplotlib: ties and bars, if any; five in a row leave no room for how large forces are."""
+    """Return matplotlib handles of ties and bars, if any; five in a row leave no room for the scale of forces."""
     from matplotlib.lines import Line2D
 
     if all(frame.links is None for frame in frames):
@@ -91,6 +91,6 @@ def legend_of_links(frames: Sequence[Frame]) -> list[Any]:
 
 
 def newtons(force: float) -> str:
-    """A force with a readable unit: 12300 -> "12.3 kN"."""
+    """Format a force with a readable unit: 12300 -> "12.3 kN"."""
     factor, unit = next(((f, u) for f, u in ((1e6, "MN"), (1e3, "kN")) if force >= f), (1.0, "N"))
     return f"{force / factor:.3g} {unit}"

@@ -1,4 +1,4 @@
-"""Surfaces of polyhedra with narrow chamfers, as dressed stones have, that light makes visible.
+"""Surfaces of polyhedra with narrow chamfers, as dressed stones have, which catch the light.
 
 Every face draws back from its edges by the chamfer; between two faces lies a strip, and around every corner a polygon.
 """
@@ -19,7 +19,7 @@ _WIDEST_CHAMFER = 0.12  # of the narrowest side of the block itself
 
 
 class Surface(NamedTuple):
-    """Faces of all blocks."""
+    """Surface of all blocks as faces."""
 
     points: np.ndarray  # from the centroid of their block [m], (n, 3)
     owners: np.ndarray  # block of each point, (n,)
@@ -29,7 +29,7 @@ class Surface(NamedTuple):
 
 
 class _Sides(NamedTuple):
-    """Sides of all faces of polyhedra, one after the other around each."""
+    """Sides of all faces of polyhedra, in order around each face."""
 
     corners: np.ndarray  # where it starts, (n,)
     faces: np.ndarray  # (n,)
@@ -39,7 +39,7 @@ class _Sides(NamedTuple):
 
 
 def sharp(model: Model) -> Surface:
-    """The faces and edges of all blocks in space as they are; where parts of one block meet, nothing is to be seen."""
+    """Create the faces and edges of all blocks in space, without faces between parts of one block."""
     topology, outer = model.topology, ~model.inner_faces
     corners = topology.face_corners
     faces = [_listed(corners[rows]) for rows in _rings(topology.face_starts, outer)]
@@ -51,7 +51,7 @@ def sharp(model: Model) -> Surface:
 
 
 def chamfered(model: Model) -> Surface:
-    """The faces of all blocks in space with chamfers; where parts of one block meet, nothing is to be seen."""
+    """Create the chamfered faces of all blocks in space, without faces between parts of one block."""
     topology, sides = model.topology, _sides(model)
     owners = model.part_blocks[topology.face_parts]
     outer = ~model.inner_faces
@@ -89,7 +89,7 @@ def _sides(model: Model) -> _Sides:
 
 
 def _chamfers(model: Model) -> np.ndarray:
-    """Chamfer of each face [m], (n_faces,)."""
+    """Compute the chamfer of each face [m], (n_faces,)."""
     topology = model.topology
     widths = spatial_parts.widths(model.vertices, model.part_starts, topology)
     usual = min(_CHAMFER * float(np.median(widths)), _LARGEST_CHAMFER * frame_measures.size(model))
@@ -97,7 +97,7 @@ def _chamfers(model: Model) -> np.ndarray:
 
 
 def _drawn_back(model: Model, sides: _Sides, distances: np.ndarray) -> np.ndarray:
-    """Corners of the faces, each within its face so far from the sides that meet there [m], (n_sides, 3)."""
+    """Move the corners of faces inwards by given distances from both sides [m], (n_sides, 3)."""
     corners = model.vertices[sides.corners]
     along = corners[sides.after] - corners
     along /= np.linalg.norm(along, axis=1, keepdims=True)
@@ -109,13 +109,13 @@ def _drawn_back(model: Model, sides: _Sides, distances: np.ndarray) -> np.ndarra
 
 
 def _rings(starts: np.ndarray, kept: np.ndarray) -> list[np.ndarray]:
-    """Sides of the faces that are kept, those with equally many together, (n, count) each."""
+    """Group the sides of the kept faces by their number of corners, (n, count) each."""
     counts = np.diff(starts)
     return [starts[:-1][kept & (counts == count), np.newaxis] + np.arange(count) for count in np.unique(counts[kept])]
 
 
 def _around_corners(sides: _Sides) -> list[np.ndarray]:
-    """Sides that start at one corner, in order around it, corners with equally many together, (n, count) each."""
+    """Group the sides around each corner in order, by their number, (n, count) each."""
     following = sides.twins[sides.before]
     _, first = np.unique(sides.corners, return_index=True)
     counts = np.bincount(sides.corners)[sides.corners[first]]
@@ -129,5 +129,5 @@ def _around_corners(sides: _Sides) -> list[np.ndarray]:
 
 
 def _listed(rows: np.ndarray) -> np.ndarray:
-    """Faces with equally many corners (n, count) as VTK has them."""
+    """Convert faces with equally many corners (n, count) to VTK form."""
     return np.column_stack([np.full(len(rows), rows.shape[1]), rows]).ravel()

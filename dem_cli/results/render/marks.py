@@ -1,4 +1,4 @@
-"""Joints and forces of a rendered scene: stripes by the state of a joint, and the forces that go through it."""
+"""Joints and forces of a rendered scene: stripes by joint state, and joint forces."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _LONGEST_BAR = 0.85  # of the smaller side of the smaller block, to either side 
 
 
 class JointStripes(NamedTuple):
-    """Joints as flat boxes that stand out of the stones a little; each contact point has its half of the joint."""
+    """Joint stripes: flat boxes slightly proud of the stones; each contact point has its half of the joint."""
 
     points: np.ndarray  # corners [m], (8 n, 3)
     faces: np.ndarray  # as VTK has them
@@ -47,7 +47,7 @@ _BOX = np.array([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 
 
 
 def stripes(model: Model, frame: Frame, scale: float, width: float) -> JointStripes:
-    """Joints of a frame that is drawn `scale` times; stripes are `width` wide [m]."""
+    """Create the joint stripes of a frame drawn at `scale`; stripes are `width` wide [m]."""
     contacts = frame.contacts
     hairline = (
         max(_HAIRLINE * frame_measures.largest_displacement(model, frame), _UNSEEN * frame_measures.size(model)) / scale
@@ -63,7 +63,7 @@ def stripes(model: Model, frame: Frame, scale: float, width: float) -> JointStri
 
 
 def _through(model: Model, contacts: ContactRecord, width: float, widths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """In the plane: half of the joint, through the thickness; corners of boxes (n, 8, 3), point of each (n,)."""
+    """Create stripes of plane joints through the thickness; corners of boxes (n, 8, 3), point of each (n,)."""
     ends = contacts.points
     centres = joint_strokes.middles(contacts)
     along = centres - ends
@@ -84,7 +84,7 @@ def _through(model: Model, contacts: ContactRecord, width: float, widths: np.nda
 
 
 def _around(model: Model, contacts: ContactRecord, width: float, widths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """In space: bars around the face that two blocks share; corners of boxes (n, 8, 3), point of each (n,)."""
+    """Create bars around the joint faces in space; corners of boxes (n, 8, 3), point of each (n,)."""
     found = joint_strokes.strokes(contacts)
     normals, along = contacts.normals[found.points], found.ends - found.starts
     outwards = np.cross(along, normals)
@@ -98,7 +98,7 @@ _BOXES = {2: _through, 3: _around}
 
 
 def forces(model: Model, frame: Frame, look: str, reach: float) -> ForceStrokes | None:
-    """Resultant force of each joint, in the plane in front of the blocks; None where nothing is pressed.
+    """Create strokes of the resultant of each joint, in the plane in front of the blocks; None without forces.
 
     look     "bars": along the force, as thick as it is large; where every block has at most two pressed joints the
              bars join to the thrust line. "arrows": on the lower of two blocks, as long as the force is large
@@ -130,7 +130,7 @@ def forces(model: Model, frame: Frame, look: str, reach: float) -> ForceStrokes 
 
 
 def links(model: Model, frame: Frame, reach: float) -> ForceStrokes | None:
-    """Ties and bars, in the plane in front of the blocks, as thick as their force is large; None: there are none."""
+    """Create strokes of ties and bars as thick as their force, in the plane in front of the blocks; None: no links."""
     if frame.links is None:
         return None
     sizes = np.abs(frame.links.forces)
@@ -145,7 +145,7 @@ def links(model: Model, frame: Frame, reach: float) -> ForceStrokes | None:
 def _arrows(
     found: frame_measures.Resultants, share: np.ndarray, front: np.ndarray, reach: float, largest: float
 ) -> ForceStrokes:
-    """Tip at the joint, pointing downwards: what lies above pushes."""
+    """Create arrows with the tip at the joint, pointing downwards: the load from above."""
     downwards = np.where(found.forces[:, -1] > 0.0, -1.0, 1.0)[:, np.newaxis]
     units = downwards * found.forces / np.linalg.norm(found.forces, axis=1, keepdims=True)
     lengths = reach * share
@@ -162,6 +162,6 @@ def _arrows(
 
 
 def _lines(counts: list[int]) -> np.ndarray:
-    """Polylines through consecutive points."""
+    """Create polylines through consecutive points."""
     starts = np.concatenate(([0], np.cumsum(counts)))
     return np.concatenate([np.concatenate(([n], np.arange(a, a + n))) for a, n in zip(starts, counts)])

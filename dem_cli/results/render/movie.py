@@ -1,4 +1,4 @@
-"""GIF and MP4 movies of pictures one after the other."""
+"""Write GIF and MP4 movies."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ _COLOURS, _PAPER = 256, 242
 
 
 def check(kind: str) -> None:
-    """UsageError where what a format needs is not installed."""
+    """Raise UsageError where the software for a format is not installed."""
     if kind == "mp4" and find_spec("imageio_ffmpeg") is None:
         raise MissingExtra("MP4 needs imageio-ffmpeg", "movie", " (--movie gif works without)")
 
 
 def write(pages: Sequence[np.ndarray], path: Path, stays: Sequence[float]) -> None:
-    """Write pictures (height, width, 3) of bytes, of equal size, each shown for so long [s].
+    """Write a movie of pictures (height, width, 3) of bytes, of equal size, with the duration of each [s].
 
     The format is that of the file's name.
     """
@@ -34,7 +34,7 @@ def write(pages: Sequence[np.ndarray], path: Path, stays: Sequence[float]) -> No
 
 
 def unfinished(path: Path) -> Path:
-    """What a file is called until it is whole; of the same kind."""
+    """Return the temporary name of a file, of the same kind."""
     return path.with_name(f".part-{path.name}")
 
 
@@ -52,7 +52,7 @@ def _write_gif(pages: Sequence[np.ndarray], path: Path, stays: list[float]) -> N
 
 
 def _palette(pages: Sequence[np.ndarray]) -> Any:
-    """One set of colours for all pictures: those of the legend, others from the first, the middle and the last."""
+    """Choose one palette for all pictures: legend colours, others from the first, the middle and the last."""
     from matplotlib.colors import to_rgb
     from PIL import Image
 

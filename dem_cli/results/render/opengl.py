@@ -1,4 +1,4 @@
-"""OpenGL libraries, looked for by ctypes before anything is rendered: VTK without them ends the process.
+"""Check for OpenGL libraries by ctypes before rendering: without them VTK ends the process.
 
 To be called in a process that may die: a broken driver can take it along.
 """
@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from dem_cli.errors import UsageError
 
-_CHOICE = "VTK_DEFAULT_OPENGL_WINDOW"  # by which VTK lets itself be told (9.4 and later)
+_CHOICE = "VTK_DEFAULT_OPENGL_WINDOW"  # environment variable that VTK reads (9.4 and later)
 _OSMESA = ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so")
 _DEVICE, _MOST_DEVICES = 0x313F, 16  # EGL_PLATFORM_DEVICE_EXT
 MISSING = (
@@ -23,7 +23,7 @@ MISSING = (
 
 
 def choose_window() -> None:
-    """Tell VTK how to draw without a display. Raises UsageError where nothing can; other systems need no choice."""
+    """Configure VTK to draw without a display. Raises UsageError where it cannot; other systems need no choice."""
     if not sys.platform.startswith("linux") or os.environ.get(_CHOICE):
         return
     if egl_works():
@@ -35,7 +35,7 @@ def choose_window() -> None:
 
 
 def loaded(name: str) -> ctypes.CDLL | None:
-    """A shared library, or None."""
+    """Load a shared library; None where it is missing."""
     try:
         return ctypes.CDLL(name)
     except OSError:
@@ -43,7 +43,8 @@ def loaded(name: str) -> ctypes.CDLL | None:
 
 
 def egl_works() -> bool:
-    """Whether EGL opens a display as VTK asks for it: of a device, a graphics card or Mesa in software, or the default.
+    """Test whether EGL opens a display as VTK needs it: of a device, a graphics card or Mesa in software, or the
+    default.
 
     None of these needs an X server.
     """
@@ -58,7 +59,7 @@ def egl_works() -> bool:
 
 
 def _displays(egl: ctypes.CDLL) -> Iterator[int | None]:
-    """Of every device, then the default one."""
+    """Yield the EGL displays of every device, then the default one."""
     query, display_of = (egl.eglGetProcAddress(name) for name in (b"eglQueryDevicesEXT", b"eglGetPlatformDisplayEXT"))
     if query and display_of:
         devices, count = (ctypes.c_void_p * _MOST_DEVICES)(), ctypes.c_int(0)
@@ -71,7 +72,7 @@ def _displays(egl: ctypes.CDLL) -> Iterator[int | None]:
 
 
 def display_works() -> bool:
-    """Whether there is an X server with OpenGL."""
+    """Test whether there is an X server with OpenGL."""
     x = loaded("libX11.so.6") if os.environ.get("DISPLAY") and loaded("libGL.so.1") else None
     if x is None:
         return False

@@ -1,4 +1,4 @@
-"""render.png, render.gif, render.mp4: the structure in a stone look, in a process of its own.
+"""Render render.png, render.gif, render.mp4: the structure in a stone look, in a separate process.
 
 A graphics driver that fails takes its process along: `render_apart` survives that and says what happened.
 """
@@ -37,7 +37,7 @@ _AROUND = 0.015  # of the size of what is seen: empty space on all sides
 
 @dataclass(frozen=True)
 class RenderOptions:
-    """Options of a rendered picture: what is drawn, and how."""
+    """Options of a rendered picture."""
 
     frame: str = "last"  # of a still: "last", "failure", a number, or a time such as "2.5s"
     standpoint: Standpoint = AS_BEST
@@ -50,7 +50,7 @@ class RenderOptions:
 
 
 def render_apart(folder: Path, path: Path, look: RenderOptions) -> None:
-    """Render the results in `folder` into a file: a still (.png) or a movie (.gif, .mp4).
+    """Render the results in `folder` into a file, in a separate process: a still (.png) or a movie (.gif, .mp4).
 
     Raises UsageError where packages, graphics libraries or frames are missing, OutputError where the renderer died.
     """
@@ -65,7 +65,7 @@ def render_apart(folder: Path, path: Path, look: RenderOptions) -> None:
 
 
 def in_own_process(work: Callable[..., object], *arguments: object) -> None:
-    """Do `work` where it can die alone. Raises what it raises, and OutputError where the process dies of graphics."""
+    """Run `work` in a separate process. Raises its errors, and OutputError where graphics kill the process."""
     context = multiprocessing.get_context("spawn")
     receiver, sender = context.Pipe(duplex=False)
     with tempfile.NamedTemporaryFile() as log, receiver:
@@ -86,7 +86,7 @@ def in_own_process(work: Callable[..., object], *arguments: object) -> None:
 
 
 def _work_alone(sender: Connection, log: str, work: Callable[..., object], arguments: tuple[object, ...]) -> None:
-    """What VTK and drivers say on stderr goes to a file; the parent is told what went wrong, or None."""
+    """Run `work` in the child process with stderr in a file, and send its error, or None, to the parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends this process
     os.dup2(os.open(log, os.O_WRONLY | os.O_APPEND), 2)
     error: Exception | None = None
@@ -103,14 +103,14 @@ def _work_alone(sender: Connection, log: str, work: Callable[..., object], argum
 
 
 def _death(said: str) -> str:
-    """One message out of what the renderer said before it died."""
+    """Create one message from the output of a renderer that died."""
     lines = [re.sub(r"\x1b\[[0-9;]*m", "", line).split("| ")[-1].strip() for line in said.splitlines()]
     reason = next((line for line in reversed(lines) if line), "it said nothing")
     return f"the renderer died ({reason}); drivers may be to blame: `dem plot` draws without them"
 
 
 def render(folder: Path, path: Path, look: RenderOptions) -> None:
-    """As `render_apart`, in this process."""
+    """Render the results in this process (see `render_apart`)."""
     from dem_cli.results.render import opengl
 
     results = read(folder)
@@ -135,7 +135,7 @@ def _write_png(page: np.ndarray, path: Path) -> None:
 
 
 def draw(results: Results, frames: list[Frame], look: RenderOptions, width: int) -> list[np.ndarray]:
-    """All pages, as (height, width, 3) bytes."""
+    """Draw all pages, as (height, width, 3) bytes."""
     from dem_cli.results.render.scene import Scene, camera
     from dem_cli.results.render.sheet import Sheet, layout
 
@@ -164,7 +164,7 @@ def draw(results: Results, frames: list[Frame], look: RenderOptions, width: int)
 
 
 def _seen(model: Model, places: list[np.ndarray]) -> np.ndarray:
-    """Corners of the blocks in space, as far as they are in the picture [m], (n, 3)."""
+    """Return the corners of the blocks in space, clipped to the limits of the picture [m], (n, 3)."""
     low, high = view_box.window(model, places, _AROUND)
     half = 0.5 * model.thickness[model.vertex_blocks]
     inside = [np.clip(corners, low, high) for corners in places]
@@ -172,14 +172,14 @@ def _seen(model: Model, places: list[np.ndarray]) -> np.ndarray:
 
 
 def _moved(results: Results, frame: Frame, scale: float) -> np.ndarray:
-    """How far the ground carries everything in this frame [m], (d,)."""
+    """Return the ground displacement that carries everything in this frame [m], (d,)."""
     if view_box.carried(results, scale):
         return view_box.ground(results.series, frame)
     return np.zeros(results.model.dimension)
 
 
 def all_frames(results: Results, fps: float | None = None) -> Playback:
-    """Of a movie, and how long each is shown [s]. Raises UsageError where there is none to be made."""
+    """Choose the frames of a movie and their durations [s]. Raises UsageError where none can be made."""
     if kind_of(results.kind).shapes:
         raise UsageError(f"the frames of {results.kind!r} do not follow each other: no movie, but --frame N draws each")
     if len(results.frames) < 2:
@@ -188,7 +188,7 @@ def all_frames(results: Results, fps: float | None = None) -> Playback:
 
 
 def chosen(results: Results, text: str) -> list[Frame]:
-    """The one frame that `--frame` asks for."""
+    """Return the one frame that `--frame` selects."""
     frames = results.frames
     if not len(frames):
         raise UsageError("the results hold no frames (output.frames = 0), so there is nothing to render")
@@ -196,7 +196,7 @@ def chosen(results: Results, text: str) -> list[Frame]:
 
 
 def frame_number(frames: Frames, results: Results, text: str) -> int:
-    """The number of the frame that `--frame` asks for. Raises UsageError where there is none."""
+    """Return the number of the frame that `--frame` selects. Raises UsageError where there is none."""
     if text == "last":
         return len(frames) - 1
     if text == "failure":
@@ -219,7 +219,7 @@ def frame_number(frames: Frames, results: Results, text: str) -> int:
 
 
 def caption(results: Results, frame: Frame, scale: float) -> str:
-    """What one sees, and how many times larger than it is."""
+    """Return the caption of a picture with the scale of displacements."""
     if results.kind == "modes" and frame.stage == "mode":
         frequency = results.summary["frequencies"][frame.step - 1]
         return f"mode {frame.step}: {frequency:.4g} Hz · of any size"

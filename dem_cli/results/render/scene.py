@@ -24,7 +24,7 @@ _REACH = 0.16  # of the picture's smaller side: the longest arrow
 
 
 class Camera(NamedTuple):
-    """A parallel projection that just holds what is to be seen."""
+    """Camera of a parallel projection that frames the visible points."""
 
     centre: np.ndarray  # point in the middle of the picture [m], (3,)
     direction: np.ndarray  # unit, towards the eye, (3,)
@@ -35,7 +35,7 @@ class Camera(NamedTuple):
 
 
 def camera(view: Axonometry, points: np.ndarray, before: Axonometry) -> Camera:
-    """Looks at points in space [m], (n, 3). before: the view of a reader who stands before the structure: the light."""
+    """Frame points in space [m], (n, 3). before: the view from the front, which sets the light."""
     axes = np.stack(view)
     seen = points @ axes.T
     low, high = seen.min(axis=0), seen.max(axis=0)
@@ -44,10 +44,10 @@ def camera(view: Axonometry, points: np.ndarray, before: Axonometry) -> Camera:
 
 
 class Scene:
-    """One picture after the other of the same structure; to be used only where `opengl.choose_window` found a way."""
+    """Scene of a structure that draws one picture after the other; it needs `opengl.choose_window` first."""
 
     def __init__(self, model: Model, eye: Camera, width: int, height: int, points: float, deep: bool):
-        """points: pixels of a typographic point. deep: with shades in corners, for oblique views."""
+        """Create the scene. points: pixels of a typographic point. deep: with shades in corners, for oblique views."""
         import pyvista
 
         self.pyvista, self.model = pyvista, model
@@ -81,13 +81,13 @@ class Scene:
             plotter.enable_ssao(radius=0.08 * size, bias=0.005 * size, kernel_size=64, blur=True)
 
     def close(self) -> None:
-        """Free what VTK holds."""
+        """Free the memory of VTK."""
         self.plotter.close()
 
     def picture(
         self, shown: Frame, scale: float, moved: np.ndarray, look: Any, colours: np.ndarray | None
     ) -> np.ndarray:
-        """The structure as in `shown`, which is drawn `scale` times and `moved` along [m], (height, width, 3) bytes.
+        """Draw the structure in a frame, at `scale` and `moved` along [m], (height, width, 3) bytes.
 
         look: which joints and forces (RenderOptions); colours: of the blocks, (n_blocks, 3) in 0 … 1, else of stone.
         """
@@ -165,7 +165,9 @@ class Scene:
 
 
 def stone_colours(model: Model) -> np.ndarray:
-    """Of each block: by its material, no two alike; fixed blocks are ground, (n_blocks, 3)."""
+    """Return the colour of each block by its material, with slight variation; fixed blocks are ground, (n_blocks,
+    3).
+    """
     stones = np.array([_rgb(colour) for colour in _STONES])[model.block_material % len(_STONES)]
     tints = 1.0 + _TINT * np.random.default_rng(1).uniform(-1.0, 1.0, model.n_blocks)
     stones = np.clip(stones * tints[:, np.newaxis], 0.0, 1.0)

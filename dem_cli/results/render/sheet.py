@@ -1,4 +1,4 @@
-"""Headline, caption, legend and colour bar around a rendered picture."""
+"""Draw headline, caption, legend and colour bar around a rendered picture."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LOWEST, _HIGHEST = 0.3, 0.85  # of the width: the picture without what stands a
 
 
 class ColourBar(NamedTuple):
-    """A scale of colours."""
+    """Colour bar with label and range."""
 
     label: str  # with its unit
     low: float
@@ -35,7 +35,7 @@ class SheetLayout(NamedTuple):
 
 
 def layout(size: tuple[int, int | None], aspect: float, entries: int, bar: bool) -> SheetLayout:
-    """Everything around a picture that is `aspect` times as high as it is wide; all sizes even, as movies need it.
+    """Compute the layout around a picture `aspect` times as high as wide; all sizes even, as movies need it.
 
     size: of the whole [pixels]; height None: as the picture asks for. entries: of the legend.
     """
@@ -49,7 +49,7 @@ def layout(size: tuple[int, int | None], aspect: float, entries: int, bar: bool)
 
 
 class Sheet:
-    """The same surroundings for every picture of a series; use inside `style.canvas()`, whose `make` is handed in."""
+    """Surroundings common to every picture of a series; use inside `style.canvas()`, whose `make` is handed in."""
 
     def __init__(
         self,
@@ -91,7 +91,7 @@ class Sheet:
         drawn.set_label(bar.label, fontsize=9, labelpad=0)
 
     def page(self, picture: np.ndarray, caption: str) -> np.ndarray:
-        """The whole sheet with a picture in it, (height, width, 3) bytes."""
+        """Draw the whole sheet with a picture in it, (height, width, 3) bytes."""
         canvas = self.figure.canvas
         if self._blank is None:  # all that stays is drawn once
             canvas.draw()

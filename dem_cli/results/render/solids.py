@@ -1,4 +1,4 @@
-"""Surfaces of the blocks in space: faces whose corners are fixed to a block, and where the blocks are in a frame.
+"""Surfaces of the blocks in space: faces with corners fixed to a block, and the poses of blocks in a frame.
 
 2D blocks are extruded by their thickness, half of it to either side of the plane, and get a narrow chamfer, as
 dressed stones have: light makes the joints visible. Polyhedra have theirs from render/chamfered.py.
@@ -22,14 +22,14 @@ _SAME_PLACE = 1e-6  # of the size of a part: edges so close are one
 
 
 class Pose(NamedTuple):
-    """Pose of all blocks: where they are, and how they are turned."""
+    """Pose of all blocks: positions and rotations."""
 
     positions: np.ndarray  # centroids [m], (n_blocks, 3)
     turns: np.ndarray  # rotation matrices, (n_blocks, 3, 3)
 
 
 def pose(positions: np.ndarray, orientations: np.ndarray) -> Pose:
-    """From centroids (n_blocks, d) and angles or quaternions; 2D blocks lie in the plane z = 0."""
+    """Create poses from centroids (n_blocks, d) and angles or quaternions; 2D blocks lie in the plane z = 0."""
     found = matrices(orientations)
     n, d = positions.shape
     turns = np.tile(np.eye(3), (n, 1, 1))
@@ -38,25 +38,25 @@ def pose(positions: np.ndarray, orientations: np.ndarray) -> Pose:
 
 
 def lifted(vectors: np.ndarray, height: np.ndarray | float = 0.0) -> np.ndarray:
-    """Vectors with three components; the third one of those in the plane is `height`."""
+    """Extend vectors to three components; the third one of those in the plane is `height`."""
     if vectors.shape[1] == 3:
         return vectors
     return np.column_stack([vectors, np.broadcast_to(height, len(vectors))])
 
 
 def placed(surface: Surface, where: Pose) -> np.ndarray:
-    """The corners in space [m], (n, 3)."""
+    """Compute the corners in space [m], (n, 3)."""
     turned = np.einsum("nij,nj->ni", where.turns[surface.owners], surface.points)
     return where.positions[surface.owners] + turned
 
 
 def surface(model: Model) -> Surface:
-    """The faces of all blocks."""
+    """Create the faces of all blocks."""
     return SURFACES[model.dimension](model)
 
 
 def prisms(model: Model) -> Surface:
-    """The faces of all blocks of a 2D model."""
+    """Create the faces of all blocks of a 2D model."""
     widths = [narrowest(part_corners(model, p)) for p in range(model.n_parts)]
     usual = min(_CHAMFER * float(np.median(widths)), _LARGEST_CHAMFER * frame_measures.size(model))
     points, owners, faces, face_owners, edges = [], [], [], [], []
@@ -84,7 +84,7 @@ def prisms(model: Model) -> Surface:
 
 
 def _sharp_edges(inner: np.ndarray, first: int) -> list[tuple[int, int]]:
-    """Edges of a prism, of which the second and third ring of points are its two outlines; none inside a block."""
+    """Return the edges of a prism whose second and third ring of points are its outlines; none inside a block."""
     n = len(inner)
     back, front = first + n, first + 2 * n
     found = []
@@ -97,19 +97,19 @@ def _sharp_edges(inner: np.ndarray, first: int) -> list[tuple[int, int]]:
 
 
 def part_corners(model: Model, part: int) -> np.ndarray:
-    """Corners of a convex part from the centroid of its block [m], (n, d)."""
+    """Return the corners of a convex part from the centroid of its block [m], (n, d)."""
     return model.vertices[model.part_starts[part] : model.part_starts[part + 1]]
 
 
 def narrowest(corners: np.ndarray) -> float:
-    """Smallest width of a convex polygon [m]: over its edges, how far the others reach."""
+    """Return the smallest width of a convex polygon [m]."""
     normals = _inward(corners)
     reach = (corners[np.newaxis] - corners[:, np.newaxis]) @ normals[:, :, np.newaxis]
     return float(reach[..., 0].max(axis=1).min())
 
 
 def inset(corners: np.ndarray, distances: np.ndarray) -> np.ndarray:
-    """Each edge of a convex polygon moved inwards by its distance [m]; corner k lies on the edges k − 1 and k."""
+    """Move each edge of a convex polygon inwards by its distance [m]; corner k lies on the edges k − 1 and k."""
     normals = _inward(corners)
     before = np.roll(normals, 1, axis=0)
     turn = cross(before, normals)
@@ -121,7 +121,7 @@ def inset(corners: np.ndarray, distances: np.ndarray) -> np.ndarray:
 
 
 def inner_edges(model: Model, part: int) -> np.ndarray:
-    """Whether an edge of a part lies against another part of the same block, (n,) bool: no joint to be seen."""
+    """Test which edges of a part lie against another part of the same block, (n,) bool, so that no joint is seen."""
     block, corners = model.part_blocks[part], part_corners(model, part)
     middles = 0.5 * (corners + np.roll(corners, -1, axis=0))
     found = np.zeros(len(corners), dtype=bool)
@@ -134,7 +134,7 @@ def inner_edges(model: Model, part: int) -> np.ndarray:
 
 
 def _inward(corners: np.ndarray) -> np.ndarray:
-    """Unit normals of the edges of a counter-clockwise polygon, into it, (n, 2); edge k starts at corner k."""
+    """Return unit normals of the edges of a counter-clockwise polygon, into it, (n, 2); edge k starts at corner k."""
     along = np.roll(corners, -1, axis=0) - corners
     lengths = np.linalg.norm(along, axis=1, keepdims=True)
     return across(along) / np.where(lengths > 0.0, lengths, 1.0)

@@ -1,4 +1,4 @@
-"""View of a rendered structure by its dimension: from where it is seen, and what stands before it gives the light."""
+"""View of a rendered structure by its dimension: viewpoint and light."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _DIRECTIONS = {"front": (0.0, 0.0, 1.0), "3d": (-0.42, 0.34, 1.0)}  # in the pla
 
 
 class RenderedView(NamedTuple):
-    """Rendered view."""
+    """Rendered view with its direction of light."""
 
     axes: Axonometry
     before: Axonometry  # of a reader who stands before the structure: light comes from where it would for them
@@ -24,7 +24,7 @@ class RenderedView(NamedTuple):
 
 
 def view_of(model: Model, frames: Sequence[Frame], asked: Standpoint) -> RenderedView:
-    """As the options ask for. Raises UsageError where a structure in the plane is given an azimuth or elevation."""
+    """Create the view for the options. Raises UsageError where a planar structure is given an azimuth or elevation."""
     return _VIEWS[model.dimension](model, frames, asked)
 
 

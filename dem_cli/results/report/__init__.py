@@ -1,1 +1,1 @@
-"""One page of HTML that holds all of a run, and opens without a network."""
+"""Write a report of a run as one HTML page that opens without a network."""

@@ -1,4 +1,4 @@
-"""The charts of a page as plain JSON: lines, levels, bands, and where each frame of the view lies on them."""
+"""Charts of a report page as plain JSON: lines, levels, bands, and the place of each frame of the view."""
 
 from __future__ import annotations
 
@@ -30,13 +30,15 @@ _PALETTE = 10  # colours in assets/page.css: --line-0 and on
 
 
 def charts(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Chart]:
-    """Every chart that the results allow; the first one stands beside the view. frames: as the view has them."""
+    """Create every chart that the results allow; the first one stands beside the view. frames: as the view has them."""
     found = [build(results, frames) for build in _BUILDERS]
     return [chart for group in found for chart in group]
 
 
 def line(name: str, x: np.ndarray, y: np.ndarray, colour: str, **look: Any) -> dict[str, Any]:
-    """colour: the end of a variable in assets/page.css; look: width, points (radius of its dots), bare (dots only)."""
+    """Create a line. colour: end of a variable in assets/page.css; look: width, points (dot radius), bare (dots
+    only).
+    """
     return {"name": name, "x": pack(np.asarray(x, float)), "y": pack(np.asarray(y, float)), "colour": colour, **look}
 
 
@@ -70,7 +72,7 @@ def _capacity(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Cha
 
 
 def _beside(summary: Mapping[str, Any], factor: float) -> list[dict[str, Any]]:
-    """The bilinear system of a capacity curve, and curves that it is compared with."""
+    """Create the bilinear system of a capacity curve, and its reference curves."""
     lines = []
     if system := (summary.get("capacity_curve") or {}).get("bilinear"):
         x = factor * np.array([0.0, system["yield_displacement"], system["ultimate_displacement"]])
@@ -83,7 +85,7 @@ def _beside(summary: Mapping[str, Any], factor: float) -> list[dict[str, Any]]:
 
 
 def _answers(summary: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Horizontal lines: the failure load with its bracket, limit analysis."""
+    """Create horizontal lines: the failure load with its bracket, limit analysis."""
     levels = []
     load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
     if load is not None:
@@ -134,7 +136,7 @@ def _collapse(results: Results) -> list[dict[str, Any]]:
 
 
 def _modes(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Chart]:
-    """How much of the mass each mode moves."""
+    """Create the chart of the effective mass of each mode."""
     summary = results.summary
     if results.kind != "modes" or not summary.get("frequencies"):
         return []
@@ -149,7 +151,7 @@ def _modes(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Chart]
 
 
 def _monitors(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Chart]:
-    """Of runs in pseudo-time: the load against each monitor, or where no load changes a monitor against the control."""
+    """Create charts of static runs: the load against each monitor, or a monitor against the control."""
     history = results.history
     if results.series is not None or results.kind == "modes" or len(history.get("step", ())) < 3:
         return []
@@ -174,13 +176,13 @@ def _monitors(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Cha
 
 
 def _unit(name: str, values: np.ndarray) -> tuple[float, str]:
-    """Of a monitor, by the quantity in its name; names that users give may not say."""
+    """Return factor and unit of a monitor, by the quantity in its name; user names may not contain one."""
     unit = next((MONITOR_UNITS[word] for word in reversed(name.split()) if word in MONITOR_UNITS), "SI")
     return style.length_unit(float(np.nanmax(np.abs(values)))) if unit == "m" else (1.0, unit)
 
 
 def _row_of(history: Mapping[str, np.ndarray], frame: Mapping[str, Any]) -> int:
-    """The row of the history that is nearest to a frame of the same stage."""
+    """Return the row of the history nearest to a frame of the same stage."""
     rows = np.flatnonzero(history["stage"] == frame["stage"])
     rows = rows if len(rows) else np.arange(len(history["step"]))
     return int(rows[np.abs(history["step"][rows] - frame["step"]).argmin()])
@@ -200,7 +202,7 @@ def _energy(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Chart
             curve = with_breaks(history["step"], along.factor * history[along.column], values)
             drawn.append(line(text, curve[0], curve[1], colour))
     marks = [[along.factor * frame[along.column], None] for frame in frames]
-    chart = {"id": "energy", "title": "Energy ledger", "x": along.label, "y": "energy since the start [J]"}
+    chart = {"id": "energy", "title": "Energy balance", "x": along.label, "y": "energy since the start [J]"}
     return [{**chart, "lines": drawn, "marks": marks, "verticals": _collapse(results)}] if drawn else []
 
 
@@ -231,7 +233,7 @@ def _fragility(results: Results, frames: Sequence[Mapping[str, Any]]) -> list[Ch
 
 
 def _found(summary: Mapping[str, Any], curve: Mapping[str, Any] | None) -> list[dict[str, Any]]:
-    """Steps of the collapse intensities; records that never collapsed count as not reached."""
+    """Create the steps of the collapse intensities; records without collapse count as not reached."""
     repeats = summary.get("repeats")
     rows = repeats["collapse_intensities"] if repeats else [[a] for a in summary["collapse_intensities"]]
     every = [value for row in rows for value in row]

@@ -1,4 +1,4 @@
-"""Answer, soundness and model of a report page in words: how far the run can be trusted, and what the model is."""
+"""Answer, soundness and model of a report page in words."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _MOST_IN_LIST = 12  # values of a list that the table of all numbers shows
 
 
 class Headline(NamedTuple):
-    """Headline of a page: the first thing that a reader sees."""
+    """Headline of a report page."""
 
     label: str
     value: str
@@ -30,7 +30,7 @@ class Headline(NamedTuple):
 
 
 class SoundnessCheck(NamedTuple):
-    """Check of a run: one thing that tells a sound one from a doubtful one."""
+    """Soundness check of a run."""
 
     name: str
     value: str
@@ -39,7 +39,7 @@ class SoundnessCheck(NamedTuple):
 
 
 def answer(summary: Mapping[str, Any]) -> Headline:
-    """Of any kind; a run that did not end well says so."""
+    """Return the headline of a run of any kind; a run that did not end well says so."""
     status = str(summary.get("status", "unfinished"))
     tone = GOOD if status == "ok" else BAD
     found = (_ANSWERS.get(str(summary.get("kind"))) or _status)(summary)
@@ -137,7 +137,7 @@ _ANSWERS = {
 
 
 def audit(summary: Mapping[str, Any], results: Results | None) -> list[SoundnessCheck]:
-    """How far this run can be trusted, with what is good in plain words."""
+    """Check how far a run can be trusted, with the criteria in plain words."""
     status = str(summary.get("status", "unfinished"))
     checks = [SoundnessCheck("status", status, GOOD if status == "ok" else BAD, "“ok”: the analysis reached its end.")]
     closure = summary.get("energy_closure")
@@ -161,7 +161,7 @@ def audit(summary: Mapping[str, Any], results: Results | None) -> list[Soundness
 
 
 def _reweighting(summary: Mapping[str, Any], results: Results | None) -> list[SoundnessCheck]:
-    """Energy that changed with the areas of contact points, where blocks move in space."""
+    """Check the energy change by reweighted areas of contact points, where blocks move in space."""
     found = summary.get("reweighting")
     if not found or results is None or not len(results.history.get("step", ())):
         return []
@@ -178,7 +178,7 @@ def _reweighting(summary: Mapping[str, Any], results: Results | None) -> list[So
 
 
 def _balance(summary: Mapping[str, Any], results: Results | None) -> list[SoundnessCheck]:
-    """Of the state under own weight, which every static analysis starts from, and of the last state."""
+    """Check the equilibrium under self-weight, the start of every static analysis, and that of the last state."""
     checks = []
     words = f"Largest force on a block that nothing balances, over its own weight; at rest below {BALANCED:.0e}."
     if results is not None and len(results.history.get("stage", ())):
@@ -197,7 +197,7 @@ def _balance(summary: Mapping[str, Any], results: Results | None) -> list[Soundn
 
 
 def model_rows(model: Model, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Size, mass and number of everything."""
+    """List size, mass and numbers of the model."""
     free = ~model.fixed
     depth = sorted({f"{value:.3g}" for value in model.thickness[free].tolist()}, key=float)
     held = int(model.restrained.any(axis=1).sum())
@@ -218,7 +218,7 @@ def model_rows(model: Model, summary: Mapping[str, Any]) -> list[tuple[str, str]
 
 
 def all_numbers(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Everything in summary.json by its path; long lists are counted, not listed."""
+    """List everything in summary.json by its path; long lists are counted, not listed."""
     found: list[tuple[str, str]] = []
 
     def walk(path: str, value: Any) -> None:
@@ -243,7 +243,7 @@ def _listed(values: Sequence[Any]) -> str:
 
 
 def written(value: Any) -> str:
-    """As summary.json has it: every digit of a number."""
+    """Format a value as in summary.json: every digit of a number."""
     if isinstance(value, bool) or value is None:
         return {True: "true", False: "false", None: "–"}[value]
     return str(value)

@@ -1,4 +1,4 @@
-"""Results in a notebook: the answer of a run and its collapse as a player, a page in a frame below the cell."""
+"""Show results in a notebook: the answer of a run and its collapse as a player, in a frame below the cell."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HEIGHT = 640  # pixels, where the page cannot say how high it is
 
 
 def cell(results: Results, summary: Mapping[str, Any], readable: bool) -> str:
-    """HTML of a frame that loads nothing. readable: whether frames can still be read; else the answer stands alone."""
+    """Create the HTML of a frame that loads nothing. readable: whether frames can still be read."""
     scene = view(results, MOST_BYTES) if readable else None
     text = render(
         {"view": scene, "charts": []},

@@ -11,14 +11,14 @@ _TYPES = {"f": "f4", "i": "u4", "u": "u4", "b": "u1"}  # by kind of number; what
 
 
 class PackedArray(TypedDict):
-    """An array in base64, as assets/page.js reads it back."""
+    """Array in base64, as assets/page.js reads it back."""
 
     type: str  # "f4", "u4" or "u1"
     data: str
 
 
 def pack(values: np.ndarray, kind: str | None = None) -> PackedArray:
-    """float32 of real numbers, uint32 of whole ones, one byte of truths or where `kind` is "u1"."""
+    """Encode an array: float32 of real numbers, uint32 of whole ones, one byte of truth values or of `kind` "u1"."""
     kind = kind or _TYPES[values.dtype.kind]
     data = np.ascontiguousarray(values, dtype=f"<{kind}" if kind != "u1" else kind)
     return {"type": kind, "data": base64.b64encode(data.tobytes()).decode("ascii")}

@@ -1,4 +1,4 @@
-"""HTML page of a report: a template, the style sheet and the scripts in one file, closed to the network.
+"""HTML page of a report: template, style sheet and scripts in one file, closed to the network.
 
 The policy in its head lets the browser run the scripts of this file by their hashes, show pictures that are in it, and
 load nothing else.
@@ -23,7 +23,7 @@ SCRIPTS = ("chart.js", "scene.js", "section.js", "marks.js", "eye.js", "player.j
 
 
 def render(data: Mapping[str, Any], **shown: Any) -> str:
-    """The page as text. data: what the scripts read, view, charts or runs; shown: what the template shows.
+    """Render the page as text. data: for the scripts, view, charts or runs; shown: for the template.
 
     brief=True leaves the head and the view, for a cell of a notebook.
     """
@@ -49,13 +49,15 @@ def render(data: Mapping[str, Any], **shown: Any) -> str:
 
 
 def script_json(data: Mapping[str, Any]) -> str:
-    """JSON that no text in it can leave the script element with; what is not finite becomes null."""
+    """Encode JSON that no text in it can end the script element early; non-finite numbers become null."""
     text = json.dumps(plain(data), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 
 def policy(scripts: Iterable[str], styles: Iterable[str]) -> str:
-    """Content-Security-Policy: these scripts and styles, pictures inside the file, and nothing from anywhere."""
+    """Create the Content-Security-Policy: these scripts and styles, pictures inside the file, nothing from
+    elsewhere.
+    """
     return "; ".join((
         "default-src 'none'",
         f"script-src {' '.join(map(_hash, scripts))}",
@@ -72,12 +74,12 @@ def _hash(text: str) -> str:
 
 @cache
 def asset(name: str) -> str:
-    """A file of this package."""
+    """Read a file of this package."""
     return (ASSETS / name).read_text(encoding="utf-8")
 
 
 def case_text(path: Path) -> str:
-    """The case that results lie beside, as far as it can be read; "" where it is gone."""
+    """Read the case beside the results, as far as possible; "" where it is gone."""
     try:
         return read_bounded(path, CASE_BYTES).decode("utf-8", errors="replace")
     except (OSError, UnreadableInput):

@@ -1,4 +1,4 @@
-"""Report page of one run."""
+"""Create the report page of one run."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _ALT = {"collapse.png": "The structure at failure and at the end", "modes.png": 
 
 
 class TerminalText(NamedTuple):
-    """Text of the command line on a run."""
+    """Summary of a run as the command line prints it."""
 
     rows: Sequence[tuple[str, str]]  # label and text of each line
     verdicts: Sequence[tuple[str, str]]  # of [reference]: "good" or "bad", and in words
 
 
 def page(folder: Path, summary: Mapping[str, Any], said: TerminalText) -> str:
-    """HTML of the run in `folder`. Raises UsageError where it holds none."""
+    """Create the HTML of the run in `folder`. Raises UsageError where it contains none."""
     results = read(folder) if (folder / RESULTS).is_file() else None
     if results is None and not summary:
         raise UsageError(f"{folder}: holds no results of dem run or dem sweep")
@@ -60,7 +60,7 @@ def page(folder: Path, summary: Mapping[str, Any], said: TerminalText) -> str:
 
 
 def pictures(results: Results) -> list[dict[str, str]]:
-    """Still pictures that no chart replaces, as data addresses; none where matplotlib is missing."""
+    """Create still pictures that no chart replaces, as data addresses; none where matplotlib is missing."""
     found = []
     with tempfile.TemporaryDirectory() as place:
         for name, draw in PICTURES.items():

@@ -1,4 +1,4 @@
-"""Report page of a sweep: a table of all runs to sort and filter, and a chart of any two of its columns."""
+"""Create the report page of a sweep: a sortable table of all runs, and a chart of any two of its columns."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ RUN_PAGES = ("report.html", "collapse.png", "render.png", "summary.json")  # wha
 
 
 def page(folder: Path, place: Path) -> str:
-    """HTML of the sweep in `folder`, for a file in `place`. Raises UsageError where its table cannot be read."""
+    """Create the HTML of the sweep in `folder`, for a file in `place`. Raises UsageError where it cannot be read."""
     table = read_sweep(folder)
     runs = {
         "columns": list(table.columns),
@@ -54,7 +54,7 @@ def page(folder: Path, place: Path) -> str:
 
 
 def main_columns(table: SweepTable) -> list[str]:
-    """Columns that the table of a sweep shows at first: parameters that differ, and answers."""
+    """Return the columns that the table of a sweep shows at first: varying parameters, and answers."""
     reasons = ["reason"] if any(table.columns.get("reason", ())) else []
     modes = [name for name in ("failure_mode",) if name in table.columns]
     brackets = [name for name in table.columns if name.startswith(("peaks.", "failure_load_bracket"))]
@@ -70,7 +70,7 @@ def main_columns(table: SweepTable) -> list[str]:
 
 
 def axes(table: SweepTable) -> dict[str, str | None]:
-    """The chart at first: the answer over the swept number with most values, a line for each value of the others."""
+    """Choose the first chart: the answer over the swept number with most values, lines for the others."""
     ranked = table.ranked()
     across, others = ranked[0] if ranked else None, ranked[1:]
     lines = len(set(zip(*(table.columns[key] for key in others)))) if others else 1
@@ -82,7 +82,7 @@ def axes(table: SweepTable) -> dict[str, str | None]:
 
 
 def answer(table: SweepTable) -> Headline:
-    """How many runs there are and what they found."""
+    """Return the headline of a sweep: numbers of runs and their answers."""
     states = [str(state) for state in table.columns["status"]]
     counts = {"solved": states.count("ok"), "to do": states.count("waiting")}
     counts["failed"] = len(states) - sum(counts.values())
@@ -96,7 +96,7 @@ def answer(table: SweepTable) -> Headline:
 
 
 def failures(table: SweepTable) -> list[str]:
-    """Why runs failed, the most frequent reasons first."""
+    """List the reasons why runs failed, the most frequent first."""
     pairs = zip(table.columns["status"], table.columns.get("reason", [None] * table.count))
     found = Counter(str(reason or state) for state, reason in pairs if state not in ("ok", "waiting"))
     said = [f"{count:,} {'run' if count == 1 else 'runs'} failed: {reason}" for reason, count in found.most_common(5)]
@@ -105,7 +105,7 @@ def failures(table: SweepTable) -> list[str]:
 
 
 def keys(table: SweepTable) -> list[tuple[str, str]]:
-    """The swept keys with their values, and how often each mode of failure came."""
+    """List the swept keys with their values, and the frequency of each failure mode."""
     lines = []
     for key in table.keys:
         values = distinct(table.columns[key])
@@ -120,7 +120,7 @@ def keys(table: SweepTable) -> list[tuple[str, str]]:
 
 
 def links(table: SweepTable, place: Path) -> dict[str, str]:
-    """Of each run the best file to open, seen from `place`."""
+    """Return the best file to open of each run, seen from `place`."""
     found, base = {}, Path(os.path.relpath(table.folder / RUNS, place)).as_posix()
     for run in filter(None, table.columns["run"]):
         name = next((name for name in RUN_PAGES if (table.folder / RUNS / run / name).is_file()), None)

@@ -1,4 +1,4 @@
-"""Interactive view of a report page: blocks as polyhedra, and of each frame the poses, joints and forces.
+"""Interactive view of a report page: blocks as polyhedra, with poses, joints and forces of each frame.
 
 Everything has three columns, and hangs on blocks by arms in their own axes: the view can exaggerate displacements
 without new numbers, and 3D needs no other view.
@@ -36,7 +36,7 @@ _SINGLE = 0.05  # length of a joint of one point, in sizes of its block
 
 
 def view(results: Results, most: int = MOST_BYTES) -> dict[str, Any]:
-    """The scene as plain JSON; where the run kept no frames, the structure as it was built. most: bytes of frames."""
+    """Create the scene as plain JSON, without frames in the initial geometry. most: bytes of frames."""
     model = results.model
     frames = _shown(results.frames) or [_as_built(model)]
     skin, series = SKINS[model.dimension](model), results.series
@@ -79,19 +79,19 @@ def view(results: Results, most: int = MOST_BYTES) -> dict[str, Any]:
 
 
 def turns(orientations: np.ndarray) -> np.ndarray:
-    """Rotation vectors [rad], (n, 3), of angles (n, 1) or of unit quaternions (n, 4), scalar first."""
+    """Compute rotation vectors [rad], (n, 3), of angles (n, 1) or of unit quaternions (n, 4), scalar first."""
     found = rotation_vectors(orientations)
     return found if found.shape[1] == 3 else np.column_stack((np.zeros((len(found), 2)), found))
 
 
 def _shown(frames: Sequence[Frame]) -> list[Frame]:
-    """Of a modal analysis the modes only."""
+    """Return the frames to show: of a modal analysis the modes only."""
     modes = [frame for frame in frames if frame.stage == MODE]
     return modes or list(frames)
 
 
 def _as_built(model: Model) -> Frame:
-    """Nothing has moved, nothing is known of the joints."""
+    """Create a frame of the initial geometry, without joints."""
     d, n = model.dimension, model.n_blocks
     none, vectors = np.zeros(0), np.zeros((0, d))
     pairs, states = np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=np.int8)
@@ -107,12 +107,12 @@ def _bytes(model: Model, frame: Frame) -> int:
 
 
 def _always(frames: Sequence[Frame], summary: Mapping[str, Any]) -> set[int]:
-    """First, last, and the one that the page opens at."""
+    """Return the frames that are always kept: first, last, and the one that the page opens at."""
     return {0, len(frames) - 1, _first_shown(frames, summary)}
 
 
 def _within(budget: int, sizes: Sequence[int], always: set[int]) -> list[int]:
-    """Every n-th frame, n as small as the budget allows, and those that must be there."""
+    """Select every n-th frame, n as small as the budget allows, and those that must be there."""
     n = len(sizes)
     for stride in range(1, n + 1):
         kept = sorted(always | set(range(0, n, stride)))
@@ -122,13 +122,13 @@ def _within(budget: int, sizes: Sequence[int], always: set[int]) -> list[int]:
 
 
 def _close(frames: Sequence[Frame]) -> bool:
-    """Whether it is known which way round every block turned from each frame to the next."""
+    """Test whether the direction of rotation of every block is unambiguous from each frame to the next."""
     pairs = zip(frames, frames[1:])
     return all(largest_angle_between(a.orientations, b.orientations) < _FAR_ROUND for a, b in pairs)
 
 
 def _first_shown(frames: Sequence[Frame], summary: Mapping[str, Any]) -> int:
-    """The first mode, the collapse or else the farthest instant of a structure that shakes, else the last frame."""
+    """Return the first frame to show: the first mode, the collapse or largest displacement, else the last frame."""
     if frames[0].stage == MODE:
         return 0
     if summary.get("collapsed"):
@@ -155,7 +155,7 @@ def _frame(model: Model, frame: Frame, scale: float) -> dict[str, Any]:
 
 
 def _says(frame: Frame, results: Results) -> str:
-    """What tells a frame from the others: its frequency, its instant, or its load where that changes."""
+    """Describe a frame by its frequency, its time, or its load where that changes."""
     if frame.stage == MODE:
         return f"mode {frame.step}: {results.summary['frequencies'][frame.step - 1]:.4g} Hz"
     if kind_of(results.kind).timed:
@@ -166,13 +166,13 @@ def _says(frame: Frame, results: Results) -> str:
 
 
 def _arms(frame: Frame, points: np.ndarray, owners: np.ndarray) -> np.ndarray:
-    """Points in the axes of the block that each hangs on [m], (n, 3)."""
+    """Convert points to the local axes of their block [m], (n, 3)."""
     turned = matrices(frame.orientations)[owners]
     return in_space(np.einsum("nji,nj->ni", turned, points - frame.positions[owners]))
 
 
 def _joints(model: Model, frame: Frame) -> dict[str, Any]:
-    """Strokes along the joints, each with the state of its contact point, which colours it."""
+    """Create strokes along the joints, each with the state of its contact point, which colours it."""
     contacts = frame.contacts
     starts, ends, points = joint_strokes.visible_strokes(contacts)
     _, owner, counts = np.unique(contacts.joint, return_inverse=True, return_counts=True)
@@ -193,7 +193,7 @@ def _joints(model: Model, frame: Frame) -> dict[str, Any]:
 
 
 def _forces(frame: Frame) -> dict[str, Any]:
-    """The resultant of each joint that is pressed, at its centre of pressure."""
+    """Create the resultant of each pressed joint, at its centre of pressure."""
     found = frame_measures.resultants(frame.contacts)
     return {
         "force_blocks": pack(found.blocks),
@@ -203,7 +203,7 @@ def _forces(frame: Frame) -> dict[str, Any]:
 
 
 def _in_space(model: Model, frames: Sequence[Frame], skin: Surface) -> dict[str, Any]:
-    """From where the reader looks first, what the light takes for the wide side, and the edges of the blocks."""
+    """Return the initial viewpoint, the direction of the wide side for the light, and the edges of the blocks."""
     farthest = max(frames, key=lambda frame: frame.displacement)
     return {
         "eye": axonometry(model, farthest).eye.tolist(),
@@ -213,7 +213,7 @@ def _in_space(model: Model, frames: Sequence[Frame], skin: Surface) -> dict[str,
 
 
 def _window(model: Model, frames: Sequence[Frame], moved: Sequence[np.ndarray]) -> dict[str, Any]:
-    """The box that all frames need at true scale, carried along by the ground as it `moved`."""
+    """Compute the box that all frames need at true scale, carried along by the ground as it `moved`."""
     corners = [stage.corners(model, frame, 1.0, shift) for frame, shift in zip(frames, moved, strict=True)]
     return {"window": [end.tolist() for end in stage.window(model, corners, 0.0)]}
 

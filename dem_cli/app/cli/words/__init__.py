@@ -1,1 +1,1 @@
-"""Terminal texts: answers, remarks and tables in words."""
+"""Format answers, remarks and tables for the terminal."""

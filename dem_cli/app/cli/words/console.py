@@ -1,4 +1,4 @@
-"""Terminal output of `dem run`, every line that a user reads: progress on stderr, the answer on stdout."""
+"""Terminal output of `dem run`: progress on stderr, the answer on stdout."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Progress:
         self._compiles = False  # that was said
 
     def update(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """Say where the run stands; cheap enough to be called often."""
+        """Update the progress; cheap enough to be called often."""
         now = time.monotonic()
         self._pace.look(now, stage, fraction)
         if not self.quiet and stage.startswith(_COMPILING):  # said at once: it takes seconds
@@ -64,7 +64,7 @@ class Progress:
             print(f"{stage}: {', '.join(filter(None, said))}", file=self.stream, flush=True)
 
     def _left(self) -> str:
-        """How long the stage still takes, where that can be known."""
+        """Format the remaining time of the stage, where it is known."""
         left = self._pace.left()
         return "" if left is None else f"about {seconds(left)} left"
 
@@ -77,7 +77,7 @@ class Progress:
         self._bar.update(self._task, description=stage, total=total, completed=fraction or 0.0, **said)
 
     def stop(self) -> None:
-        """Take the bar away."""
+        """Remove the progress bar."""
         if self._bar is not None:
             self._bar.stop()
             self._bar = None
@@ -110,7 +110,7 @@ MOST_TURNS = 6  # of a load path, in one line
 
 
 def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbose: bool = False) -> str:
-    """The result of a run as text: the failure load first, then how sure it is and where everything lies.
+    """Format the result of a run: the failure load first, then its accuracy and the files.
 
     verbose: what was skipped as well, and why kernels took longer than they need.
     """
@@ -125,19 +125,19 @@ def answer(summary: Mapping[str, Any], folder: Path, files: Sequence[str], verbo
 
 
 def answer_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Label and text of each line of an answer of any kind, without warnings."""
+    """Return label and text of each line of an answer of any kind, without warnings."""
     rows = [*_load_rows(summary), *_shaking_rows(summary), *fragility_rows(summary), *mode_rows(summary)]
     rows += [*curve_rows(summary), *safety_rows(summary)]
     return [*_standing_rows(summary), *rows, *sureness_rows(summary), *_cost_rows(summary)]
 
 
 def _controlled(turn: Mapping[str, Any]) -> float:
-    """Displacement of a turning point: that of the monitor that is controlled, else of the live load [m]."""
+    """Return the displacement of a turning point: of the controlled monitor, else of the live load [m]."""
     return float(turn["controlled"] if "of" in turn else turn.get("live_displacement", turn["displacement"]))
 
 
 def _standing_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Words of a structure that stands under its dead loads; how far blocks moved until then, where that is far."""
+    """Describe a structure that stands under its dead loads, and large displacements until then."""
     if summary.get("kind") != "gravity" or summary["status"] != "ok":
         return []
     far = summary.get("moved_far")
@@ -146,12 +146,12 @@ def _standing_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def explained(summary: Mapping[str, Any]) -> bool:
-    """Whether the failure load lies above its bound because blocks have moved before."""
+    """Test whether the failure load exceeds its bound because blocks have moved before."""
     return bool((summary.get("above_the_bound") or {}).get("explained"))
 
 
 def _moved_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Load of the first motion, which comes before a failure load that only blocks can carry that have moved."""
+    """Describe the load of the first motion, where only displaced blocks carry the failure load."""
     if not explained(summary):
         return []
     above = summary["above_the_bound"]
@@ -201,7 +201,7 @@ def _load_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def _shaking_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Of a time history: did it stand, how far did it go, what took the energy."""
+    """Describe a time history: collapse, peaks, and energy balance."""
     how = ending_words(summary)
     rows = [("result", how)] if how else []
     fallen = summary.get("fallen_blocks")
@@ -226,7 +226,7 @@ def _shaking_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def _peak_words(found: Mapping[str, Any]) -> str:
-    """A peak and its time; that of the motion beside it, where it came after the motion."""
+    """Format a peak and its time; also that during the motion, where it came after the motion."""
     if found["peak"] is None:
         return "no peak, blocks hit each other"
     said = f"{_measure(found['peak'], found['unit'])} at {found['time']:.4g} s"
@@ -237,7 +237,7 @@ def _peak_words(found: Mapping[str, Any]) -> str:
 
 
 def _measure(value: float | None, unit: str) -> str:
-    """A value of a monitor with its unit."""
+    """Format a value of a monitor with its unit."""
     if value is None:
         return "–"
     return metres(value) if unit == "m" else f"{value:.3g} {unit}"
@@ -250,7 +250,7 @@ def _cost_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def limit_answer(summary: Mapping[str, Any], folder: Path | None = None) -> str:
-    """The result of a limit analysis as text."""
+    """Format the result of a limit analysis."""
     limits = summary["limit_analysis"]
     rows = [] if summary["status"] == "ok" else [("status", str(summary["status"]))]
     rows += limit_rows(limits)
@@ -264,11 +264,11 @@ def limit_answer(summary: Mapping[str, Any], folder: Path | None = None) -> str:
 
 
 def show(lines: str) -> None:
-    """Print the answer, on stdout."""
+    """Print the answer on stdout."""
     print(printable(lines), flush=True)
 
 
 def note(line: str, quiet: bool = False) -> None:
-    """Print a remark, on stderr."""
+    """Print a remark on stderr."""
     if not quiet:
         print(printable(line), file=sys.stderr, flush=True)

@@ -12,7 +12,7 @@ MOST_LOADS = 6  # at displacements, in one line
 
 
 def curve_rows(summary: Mapping[str, Any]) -> Rows:
-    """Label and text of each line; nothing for runs without a curve."""
+    """Return label and text of each line of a capacity curve; empty for runs without one."""
     rows: Rows = []
     curve = summary.get("capacity_curve")
     if curve:
@@ -44,7 +44,7 @@ def _system(system: Mapping[str, Any] | None) -> Rows:
 
 
 def _check(found: Mapping[str, Any]) -> Rows:
-    """Of a spectrum: every number of it is in summary.json."""
+    """Describe the check against a spectrum."""
     if not found:
         return []
     asked, has = metres(found["target_displacement"]), metres(found["displacement_capacity"])

@@ -1,4 +1,4 @@
-"""Fragility curves and the spread of repeats in words: what a user of `dem run` reads of many runs."""
+"""Fragility curves and the spread of repeats in words, for the answer of `dem run`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ MOST_LISTED = 8  # levels, records or monitors that are listed
 
 
 def fragility_rows(summary: Mapping[str, Any]) -> Rows:
-    """Label and text of each line; nothing for other runs."""
+    """Return label and text of each line of a fragility study or of repeats; empty for other runs."""
     if summary.get("kind") == "fragility":
         return _study(summary) if summary.get("collapse_intensities") else []
     return _repeats(summary["repeats"]) if summary.get("repeats") else []
@@ -66,7 +66,7 @@ def _why_no_median(summary: Mapping[str, Any]) -> str:
 
 
 def _shares(summary: Mapping[str, Any]) -> Rows:
-    """How many collapsed at each level, of a grid."""
+    """Describe the share that collapsed at each level of a grid."""
     levels = list(zip(summary.get("levels") or (), summary.get("share") or ()))
     if not levels:
         return []
@@ -76,7 +76,7 @@ def _shares(summary: Mapping[str, Any]) -> Rows:
 
 
 def _non_monotone(found: list[dict[str, Any]]) -> Rows:
-    """Records that a structure survived above a collapse."""
+    """Describe records that a structure survived above a collapse."""
     rows = []
     for one in found[:MOST_LISTED]:
         who = one["record"] + (f", structure {one['structure']}" if one["structure"] else "")
@@ -88,7 +88,7 @@ def _non_monotone(found: list[dict[str, Any]]) -> Rows:
 
 
 def _repeats(repeats: Mapping[str, Any]) -> Rows:
-    """The spread of the peaks over perturbed structures."""
+    """Describe the spread of the peaks over perturbed structures."""
     moving = repeats.get("still_moving")
     also = f", {moving} still moved in the end" if moving else ""
     rows = [("repeats", f"{repeats['collapsed']} of {repeats['runs']} perturbed structures collapsed{also}")]

@@ -1,4 +1,4 @@
-"""Loads of limit analysis in words: each with what it bounds, and how sure that is."""
+"""Loads of limit analysis in words: lower and upper bounds, and their accuracy."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ SLIGHT = 0.01  # of the load: what head joints may take before this is said
 
 
 def wedged(limits: Mapping[str, Any]) -> bool:
-    """Whether friction of head joints that dilate carries some of the associated load, in space."""
+    """Test whether friction of dilating head joints carries some of the associated load, in space."""
     return (limits.get("associated_head_friction") or 0.0) > SLIGHT
 
 
 def limit_rows(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Label and text of each load, from the highest to the lowest; `limit_analysis` of a summary."""
+    """Return label and text of each load, from the highest to the lowest; `limit_analysis` of a summary."""
     return [*_associated(limits), *_path(limits), *_least(limits), *_lower(limits), *_hand_check(limits)]
 
 
@@ -56,12 +56,12 @@ def _path(limits: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def _smoothed(limits: Mapping[str, Any]) -> str:
-    """A word where the corner of friction was rounded off on the path, as for large structures."""
+    """Describe the smoothing of friction along the path, used for large structures."""
     return "smoothed path: an estimate, " if limits.get("non_associated_smoothing") else ""
 
 
 def _at_once(limits: Mapping[str, Any]) -> bool:
-    """Whether the load of a path was highest after its first increment from gravity."""
+    """Test whether the load of a path was highest after its first increment from gravity."""
     return limits.get("non_associated_highest_increment") == 1
 
 

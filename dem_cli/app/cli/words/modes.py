@@ -1,4 +1,4 @@
-"""Natural frequencies in words: a table, and what to write into [joints]."""
+"""Natural frequencies in words: a table, and the calibrated joint stiffness for [joints]."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ MOST_LINES = 20  # lines of the table
 
 
 def mode_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Label and text of each line; none where the run is no modal analysis."""
+    """Return label and text of each line of a modal analysis; empty for other runs."""
     frequencies = summary.get("frequencies")
     if frequencies is None:
         return []
@@ -29,7 +29,7 @@ def mode_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def _springs(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """How many contact points act, and what the others would change."""
+    """Describe the number of active contact points, and the effect of the others."""
     springs, first = summary["springs"], summary["first_frequency"]
     if springs["pressed"] == springs["touching"]:
         return [("springs", f"all {springs['pressed']:,} contact points that touch are pressed together")]

@@ -1,10 +1,10 @@
-"""Numbers with readable units in the terminal output: lengths, durations, load multipliers."""
+"""Format numbers with readable units: lengths, durations, load multipliers."""
 
 from __future__ import annotations
 
 
 def metres(value: float) -> str:
-    """A length with a readable unit: 1.2e-05 -> "12 µm"."""
+    """Format a length with a readable unit: 1.2e-05 -> "12 µm"."""
     for scale, unit in ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm")):
         if abs(value) >= scale or unit == "µm":
             return f"{value / scale:.3g} {unit}"
@@ -12,7 +12,7 @@ def metres(value: float) -> str:
 
 
 def seconds(value: float) -> str:
-    """A duration as people say it."""
+    """Format a duration with a readable unit."""
     if value < 0.995:
         return f"{1000 * value:.0f} ms"
     if value < 120:
@@ -21,5 +21,5 @@ def seconds(value: float) -> str:
 
 
 def load_text(value: float | None) -> str:
-    """A load multiplier with four decimals."""
+    """Format a load multiplier with four decimals."""
     return "–" if value is None else f"{value:.4f}" if abs(value) < 100 else f"{value:.6g}"

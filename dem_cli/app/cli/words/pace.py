@@ -1,4 +1,4 @@
-"""Pace of a stage of a run: how long it still takes, said only where that can be known."""
+"""Estimate the remaining time of a stage of a run, only where it is known."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _COUNT = re.compile(r"[\d,.]+")
 
 
 class Pace:
-    """How fast the stage of a run goes that is under way; another stage begins anew."""
+    """Progress rate of the current stage of a run; another stage begins anew."""
 
     def __init__(self) -> None:
         self.stage: str | None = None
@@ -22,7 +22,7 @@ class Pace:
         self.shares: list[float] = []  # of the work, at these times
 
     def look(self, now: float, stage: str, share: float | None) -> None:
-        """The share of the work that is done at a time [s]; None where nobody knows it. `runs 3 of 9` is one stage."""
+        """Record the share of the work that is done at a time [s]; None if unknown. `runs 3 of 9` is one stage."""
         stage = _COUNT.sub("", stage)
         if stage != self.stage or share is None or (self.shares and share < self.shares[-1]):
             self.stage, self.times, self.shares = stage, [], []
@@ -34,7 +34,7 @@ class Pace:
             del self.times[1:-1:2], self.shares[1:-1:2]
 
     def left(self) -> float | None:
-        """Seconds that the stage still takes; None where it is young, hardly begun or accelerates."""
+        """Estimate the remaining seconds of the stage; None where it is young, hardly begun or accelerates."""
         if not self.times:
             return None
         took, done = self.times[-1] - self.times[0], self.shares[-1] - self.shares[0]

@@ -1,4 +1,4 @@
-"""Comparison with the `[reference]` of a case in words."""
+"""Format the comparison with the `[reference]` of a case."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from typing import Any
 
 
 def reference_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """A line for each reference of a run."""
+    """Return a line for each reference of a run."""
     from dem_cli.results.output.reference import from_summary
 
     return [("reference", one_line(answer)) for answer in from_summary(summary.get("reference"))]
 
 
 def one_line(answer: Mapping[str, Any]) -> str:
-    """A verdict of results/output/reference.py in words; a failure load that was found stands above it."""
+    """Format a verdict of results/output/reference.py; a failure load that was found stands above it."""
     if "displacements" in answer:
         return f"{curve_words(answer)}: {judged(answer)}"
     load = answer["quantity"] == "failure_load"
@@ -23,13 +23,15 @@ def one_line(answer: Mapping[str, Any]) -> str:
 
 
 def expected(answer: Mapping[str, Any]) -> str:
-    """`0.64 ± 0.001`, `[0.3, 0.4] ± 0.01`, `ok` or `false`."""
+    """Format an expected value: `0.64 ± 0.001`, `[0.3, 0.4] ± 0.01`, `ok` or `false`."""
     slack = f" ± {answer['tolerance']:.2g}" if answer["tolerance"] else ""
     return f"{shown(answer['value'])}{slack}"
 
 
 def curve_words(answer: Mapping[str, Any]) -> str:
-    """`curve of 13 points, peak 102500: 8.7 % of that off on average, at most +45 %, 5 % allowed`."""
+    """Format a curve verdict: `curve of 13 points, peak 102500: 8.7 % of that off on average, at most +45 %, 5 %
+    allowed`.
+    """
     peak = max(answer["value"])
     text = f"curve of {len(answer['value'])} points, peak {shown(peak)}"
     if "mean_error" not in answer:
@@ -39,7 +41,7 @@ def curve_words(answer: Mapping[str, Any]) -> str:
 
 
 def judged(answer: Mapping[str, Any]) -> str:
-    """The verdict in words."""
+    """Format the verdict."""
     if "problem" in answer:
         return f"FAILED, {answer['problem']}"
     if "missed" in answer:
@@ -48,7 +50,7 @@ def judged(answer: Mapping[str, Any]) -> str:
 
 
 def shown(value: Any) -> str:
-    """A number, word, truth or interval as it stands in a case file, with six digits."""
+    """Format a number, text, truth value or interval as in a case file, with six digits."""
     if isinstance(value, bool) or value is None:
         return {True: "true", False: "false", None: "–"}[value]
     if isinstance(value, (list, tuple)):

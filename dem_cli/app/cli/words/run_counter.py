@@ -1,4 +1,4 @@
-"""Progress of many runs: how many are done, how fast they go, how long the rest takes."""
+"""Progress of many runs: number done, rate, remaining time."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class RunCounter:
         self._bar: Any = None
 
     def update(self, failed: bool = False) -> None:
-        """One more run is done."""
+        """Count one more finished run."""
         now = time.monotonic()
         self.done += 1
         self.failed += failed
@@ -42,17 +42,17 @@ class RunCounter:
             print(self.line(), file=self.stream, flush=True)
 
     def rate(self) -> float:
-        """Runs per second, of late."""
+        """Return the recent rate in runs per second."""
         took = self._ends[-1] - self._ends[0]
         return (len(self._ends) - 1) / took if took > 0.0 else 0.0
 
     def speed(self) -> str:
-        """The rate as people say it."""
+        """Format the rate with a readable unit."""
         rate = self.rate()
         return "" if not rate else f"{rate:.3g} runs/s" if rate >= 1.0 else f"{seconds(1.0 / rate)} a run"
 
     def line(self) -> str:
-        """Where it stands."""
+        """Format the progress in one line."""
         pace = ", ".join(filter(None, (self.speed(), self._left())))
         return f"{self.done:,} of {self.total:,} runs{self._failures()}, {pace}"
 

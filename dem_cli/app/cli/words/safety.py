@@ -1,4 +1,4 @@
-"""Safety factors in words: the factor or the value, its bracket, and what decided it."""
+"""Safety factors in words: the factor or the value, its bracket, and the deciding runs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MOST_JOINTS = 8  # joints that are listed
 
 
 def safety_rows(summary: Mapping[str, Any]) -> Rows:
-    """Label and text of each line; nothing for other runs."""
+    """Return label and text of each line of a safety analysis; empty for other runs."""
     if summary.get("kind") != "safety" or "runs" not in summary:
         return []
     rows = _answer(summary) + _needed(summary)
@@ -54,7 +54,7 @@ def _answer(summary: Mapping[str, Any]) -> Rows:
 
 
 def _no_change(stands: float | None, fails: float | None) -> str:
-    """What it says that all factors end alike: nothing, unless all that are sensible were tried."""
+    """Describe the result where all tried factors end alike."""
     from dem_cli.case.tables.safety import FACTORS
 
     if (stands or 0.0) >= FACTORS[1] or (fails or math.inf) <= FACTORS[0]:
@@ -63,7 +63,7 @@ def _no_change(stands: float | None, fails: float | None) -> str:
 
 
 def _needed(summary: Mapping[str, Any]) -> Rows:
-    """Strengths with which it just stands."""
+    """Describe the strengths at which the structure just stands."""
     rows = []
     for joint, values in list((summary.get("strengths_needed") or {}).items())[:MOST_JOINTS]:
         text = ", ".join(f"{name} {value:.4g}{STRENGTH_UNITS[name]}" for name, value in values.items())

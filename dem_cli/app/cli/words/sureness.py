@@ -1,4 +1,4 @@
-"""How sure a failure load is, in words: bracket, second histories, bound by limit analysis, energy, reference."""
+"""Accuracy of a failure load in words: bracket, second histories, bound by limit analysis, energy, reference."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ STARTS = {"path": "the zero-dilation path", "limit": "the forces of limit analys
 
 
 def sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Label and text of each line on how an answer was reached and how well it is known."""
+    """Return label and text of each line on the accuracy of an answer and its search."""
     rows = []
     parts = _of_load(summary)
     if summary.get("energy_closure") is not None:
@@ -47,7 +47,7 @@ def sureness_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 
 def _of_load(summary: Mapping[str, Any]) -> list[str]:
-    """Width of the bracket of the failure load, and how other methods agree with it."""
+    """Describe the bracket of the failure load, and its agreement with other methods."""
     load, bracket = summary.get("failure_load"), summary.get("failure_load_bracket")
     if not load or not bracket or None in bracket:
         return []

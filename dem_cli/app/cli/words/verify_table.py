@@ -1,4 +1,4 @@
-"""Tables of `dem verify`: a row for each reference, by shelf, and what went wrong in sentences."""
+"""Format the tables of `dem verify`: a row for each reference, by shelf, and failures in sentences."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NUMBER_COLUMNS = ("ours", "reference", "error", "%", "allowed", "time")
 
 
 def show_tables(records: Sequence[Record]) -> None:
-    """Prints a table for each shelf, then a sentence for everything that did not pass."""
+    """Print a table for each shelf, then a sentence for every reference that did not pass."""
     screen = Console(
         file=sys.stdout, width=None if sys.stdout.isatty() else UNCUT_WIDTH, highlight=False, soft_wrap=False
     )

@@ -1,1 +1,1 @@
-"""Buildings: walls from their axes in plan, bonded where they meet, with openings, gables and floors."""
+"""Generate buildings: walls from their axes in plan, bonded where they meet, with openings, gables and floors."""

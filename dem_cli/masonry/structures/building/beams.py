@@ -1,4 +1,4 @@
-"""Beams of a floor: square to a wall, evenly spaced, clear of openings and of walls that they do not bear on."""
+"""Lay the beams of a floor: square to a wall, evenly spaced, clear of openings and of other walls."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ BEAM_ENDS = (([1, 2], [0, 3]), ([3, 0], [2, 1]))
 
 
 def lay_beams(found: Floors, bed: Bed) -> None:
-    """Beams square to the first wall, evenly spaced, each with a pocket at both ends."""
+    """Lay beams square to the first wall, evenly spaced, each with a pocket at both ends."""
     floor, first = bed.floor, next(side for side in bed.room if side.wall == bed.building.number(bed.floor.on[0]))
     last = next(side for side in bed.room if side.wall == bed.building.number(bed.floor.on[1]))
     if abs(float(product(first.along, last.along))) < OPPOSITE:
@@ -42,7 +42,7 @@ def lay_beams(found: Floors, bed: Bed) -> None:
 
 
 def _check_beam(bed: Bed, sides: tuple[RoomSide, RoomSide], beam: np.ndarray, n: int) -> None:
-    """Raises KeyProblem where a beam would run into another wall before it reaches the last one."""
+    """Raise KeyProblem where a beam would run into another wall before it reaches the last one."""
     walls = tuple(bed.wall(side) for side in sides)
     met = bed.wall_under(beam, walls)
     if met is not None:
@@ -53,7 +53,7 @@ def _check_beam(bed: Bed, sides: tuple[RoomSide, RoomSide], beam: np.ndarray, n:
 
 
 def _advice(bed: Bed, sides: tuple[RoomSide, RoomSide]) -> str:
-    """Two walls of the room between which all beams are clear, in words."""
+    """Suggest two walls of the room between which all beams are clear."""
     first, last = sides
     for one, other in ((last, first), *permutations([side for side in bed.room if side.wall is not None], 2)):
         if abs(float(product(one.along, other.along))) >= OPPOSITE and _are_clear(bed, (one, other)):
@@ -63,7 +63,7 @@ def _advice(bed: Bed, sides: tuple[RoomSide, RoomSide]) -> str:
 
 
 def _are_clear(bed: Bed, sides: tuple[RoomSide, RoomSide]) -> bool:
-    """Whether beams between two sides of a room meet no other wall."""
+    """Test whether beams between two sides of a room meet no other wall."""
     walls = tuple(bed.wall(side) for side in sides)
     bearing = {wall: bed.plan.axes[wall].thickness for wall in walls}
     turned = bed._replace(bearing=bearing)
@@ -74,7 +74,7 @@ def _are_clear(bed: Bed, sides: tuple[RoomSide, RoomSide]) -> bool:
 
 
 def _clear_length(bed: Bed, side: RoomSide) -> tuple[float, float]:
-    """From where to where along a side of a room its inner face goes [m]."""
+    """Return both ends of the inner face along a side of a room [m]."""
     inner = crossings([edge_line(bed._replace(bearing={}), each, 0.0) for each in bed.room])
     k = next(i for i, each in enumerate(bed.room) if each is side)
     begin, end = (product(inner[j % len(inner)] - side.start, side.along) for j in (k, k + 1))
@@ -82,7 +82,7 @@ def _clear_length(bed: Bed, side: RoomSide) -> tuple[float, float]:
 
 
 def _beam(bed: Bed, first: RoomSide, last: RoomSide, middle: float) -> np.ndarray:
-    """Outline of a beam whose middle line leaves the first wall at a place along it [m], (4, 2)."""
+    """Return the outline of a beam whose axis leaves the first wall at a place along it [m], (4, 2)."""
     half = 0.5 * bed.floor.width
     at = float(product(first.along, first.start)) + middle
     sides = [(first.along, at - half), edge_line(bed, first, 0.0), (first.along, at + half), edge_line(bed, last, 0.0)]
@@ -90,7 +90,7 @@ def _beam(bed: Bed, first: RoomSide, last: RoomSide, middle: float) -> np.ndarra
 
 
 def _moved(bed: Bed, sides: tuple[RoomSide, RoomSide], n: int, middle: float, spacing: float) -> float:
-    """The place nearest to where a beam belongs that leaves no sliver beside openings and other walls."""
+    """Shift a beam to the nearest place that leaves no sliver beside openings and other walls [m]."""
     walls = tuple(bed.wall(side) for side in sides)
     shifts = np.linspace(0.0, 0.45, 46) * (spacing - bed.floor.width)
     for place in (middle + sign * shift for shift in shifts for sign in (1.0, -1.0)):
@@ -109,7 +109,7 @@ def _moved(bed: Bed, sides: tuple[RoomSide, RoomSide], n: int, middle: float, sp
 
 
 def _fits(bed: Bed, side: RoomSide, outline: np.ndarray) -> bool:
-    """Whether a pocket keeps a quarter of a block from openings and walls beside it."""
+    """Test whether a pocket keeps a quarter of a block from openings and walls beside it."""
     wall, least = bed.wall(side), SHORTEST * bed.building.block[0]
     axis, small = bed.plan.axes[wall], SMALL * bed.building.block[1]
     low, high = np.sort(axis.local(outline)[:, 0])[[0, -1]]

@@ -1,4 +1,4 @@
-"""Bed of a floor: where it bears on the walls of its room, the edges of its plate or beams, pockets in the walls."""
+"""Bearing of a floor on the walls of its room: edges of the plate or beams, pockets in the walls."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ THINNEST = 0.25  # of a wall: what is left of it beside a floor
 
 
 class Slab(NamedTuple):
-    """A plate or a beam."""
+    """Plate or beam of a floor."""
 
     name: str
     outline: np.ndarray  # in plan, convex, counter-clockwise [m], (n, 2)
@@ -30,14 +30,14 @@ class Slab(NamedTuple):
 
 
 class Floors(NamedTuple):
-    """All floors of a building."""
+    """All floors of a building with the pockets that they need."""
 
     slabs: list[Slab]
     pockets: dict[int, list[Pocket]]  # of each wall
 
 
 class Bed(NamedTuple):
-    """A floor with all that decides where it lies."""
+    """Floor with the room, walls and bearing lengths that determine its place."""
 
     building: Building
     plan: Plan
@@ -50,12 +50,12 @@ class Bed(NamedTuple):
     courses: range  # that it interrupts
 
     def wall(self, side: RoomSide) -> int:
-        """The wall of a side on which it bears."""
+        """Return the bearing wall of a side of the room."""
         assert side.wall is not None
         return side.wall
 
     def wall_under(self, outline: np.ndarray, bears_on: Sequence[int]) -> int | None:
-        """A wall in whose place a plate or beam would lie, not one that it bears on; None: there is none."""
+        """Find a non-bearing wall that a plate or beam would overlap; None: there is none."""
         for wall, axis in enumerate(self.plan.axes):
             table = self.building.walls[wall]
             top = float(self.building.levels[table.courses or self.building.courses])
@@ -66,12 +66,12 @@ class Bed(NamedTuple):
         return None
 
     def name(self, *more: int) -> str:
-        """Of a plate, or of a beam of some number."""
+        """Return the name of a plate, or of a numbered beam."""
         return "-".join([self.floor.id, *map(str, more)])
 
 
 def crossings(lines: Sequence[tuple[np.ndarray, float]]) -> np.ndarray:
-    """Where lines (unit normal, distance from the origin), one after the other around, cross [m], (n, 2)."""
+    """Intersect consecutive lines (unit normal, distance from the origin) around a polygon [m], (n, 2)."""
     found = []
     for (n, a), (m, b) in zip([lines[-1], *lines[:-1]], lines, strict=True):
         found.append(np.array([a * m[1] - b * n[1], b * n[0] - a * m[0]]) / float(cross(n, m)))
@@ -79,7 +79,7 @@ def crossings(lines: Sequence[tuple[np.ndarray, float]]) -> np.ndarray:
 
 
 def edge_line(bed: Bed, side: RoomSide, gap: float) -> tuple[np.ndarray, float]:
-    """The edge of a plate along a side of its room."""
+    """Return the line of the edge of a plate along a side of its room."""
     away = 0.0
     if side.wall is not None:
         inner = 0.5 * bed.plan.axes[side.wall].thickness
@@ -88,14 +88,14 @@ def edge_line(bed: Bed, side: RoomSide, gap: float) -> tuple[np.ndarray, float]:
 
 
 def in_wall(bed: Bed, side: RoomSide, ends: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Corners of what lies in a wall, (4, 2): ends there, and where edges to the others leave it."""
+    """Return the corners of a bearing in a wall, (4, 2), between its ends and the edges to the other sides."""
     ways = others - ends
     depths = bed.bearing[bed.wall(side)] / product(ways, side.inwards)
     return np.concatenate([ends, ends + ways * np.minimum(depths, 1.0)[:, None]])
 
 
 def cut_pockets(found: Floors, bed: Bed, side: RoomSide, outline: np.ndarray) -> None:
-    """A pocket in the wall of a side, in all courses beside the floor."""
+    """Cut a pocket in the wall of a side, in all courses beside the floor."""
     wall = bed.wall(side)
     axis = bed.plan.axes[wall]
     right, left = axis.faces.tolist()

@@ -1,4 +1,4 @@
-"""Bond of a course: where its head joints are, given those that it must not continue, without short blocks.
+"""Place the head joints of a course: clear of those below, as the bond has them, without short blocks.
 
 Of all ways to lay a run in blocks between a quarter and the whole of the given length, the one of least cost: blocks
 are as long as the bond has them there, heads lie where it has them, and away from what is fixed above and below: faces
@@ -23,7 +23,7 @@ CLOSER = 0.6  # cost of a quarter at the very end of a bond with headers: it lie
 
 
 class RunEnds(NamedTuple):
-    """Ends of a run [m]: the middle of each, and half of what it is askew."""
+    """Ends of a run of masonry [m]: the middle of each, and half of its skew."""
 
     start: float
     stop: float
@@ -32,19 +32,19 @@ class RunEnds(NamedTuple):
 
     @property
     def length(self) -> float:
-        """From middle to middle [m]."""
+        """Length of the run from middle to middle [m]."""
         return self.stop - self.start
 
 
 class Laid(NamedTuple):
-    """A run in blocks."""
+    """Run of a course divided into blocks."""
 
     heads: np.ndarray  # head joints between its ends [m], (n,)
     cost: float
 
 
 class CourseBond(NamedTuple):
-    """Where a bond has blocks and heads in a course, over and over."""
+    """Periodic bond of a course: units and head joints."""
 
     pattern: Pattern
     length: float  # of a full block [m]
@@ -52,38 +52,39 @@ class CourseBond(NamedTuple):
 
     @property
     def shares(self) -> np.ndarray:
-        """Lengths of its units, in full blocks, (n,)."""
+        """Lengths of the units of the bond, in full blocks, (n,)."""
         return np.array([unit.length for unit in self.pattern.units])
 
     @property
     def period(self) -> float:
-        """After which it repeats itself [m]."""
+        """Period of the bond [m]."""
         return float(self.shares.sum()) * self.length
 
     @property
     def steps(self) -> np.ndarray:
-        """Where its units begin in a period [m], (n,)."""
+        """Starts of the units within a period [m], (n,)."""
         return np.concatenate([[0.0], np.cumsum(self.shares)[:-1]]) * self.length
 
     @property
     def has_headers(self) -> bool:
-        """Whether some of its units are headers."""
+        """Tell whether some units are headers."""
         return any(unit.header for unit in self.pattern.units)
 
     def units_at(self, places: np.ndarray) -> np.ndarray:
-        """Which unit lies at each place [m], (n,)."""
+        """Return the unit of the bond at each place [m], (n,)."""
         within = np.mod(places - self.first, self.period)
         return np.searchsorted(self.steps, within + SAME * self.length, side="right") - 1
 
     def off(self, places: np.ndarray) -> np.ndarray:
-        """How far places are from the nearest head of the bond, in full blocks, (n,)."""
+        """Return the distance of places from the nearest head joint of the bond, in full blocks, (n,)."""
         off = (places[:, None] - self.first - self.steps) / self.period
         share: np.ndarray = np.abs(off - np.rint(off)).min(axis=1) * (self.period / self.length)
         return share
 
 
 def clearance(one: Pattern, other: Pattern) -> float:
-    """How far moved heads of a course must keep from those below, in full blocks: as the bond has it, up to a quarter.
+    """Return the least overlap of moved head joints with those below, in full blocks: as the bond has it, up to a
+    quarter.
 
     Nothing where the bond has them half a block apart: then blocks and jambs that are fixed leave them enough.
     """
@@ -101,7 +102,7 @@ def clearance(one: Pattern, other: Pattern) -> float:
 def laid(
     ends: RunEnds, bond: CourseBond, fixed: Iterable[float], heads: Iterable[float] = (), apart: float = 0.0
 ) -> Laid:
-    """A run in blocks, with heads away from joints that are `fixed` above and below, and from `heads` below [m].
+    """Divide a run into blocks with head joints away from `fixed` joints above and below, and from `heads` below [m].
 
     apart: how far heads of both courses are from each other, in full blocks.
     """
@@ -114,7 +115,7 @@ def laid(
 
 @lru_cache(maxsize=4096)
 def _laid(ends: RunEnds, bond: CourseBond, near: tuple[float, ...], below: tuple[float, ...], apart: float) -> Laid:
-    """The same; courses repeat each other."""
+    """Divide a run into blocks, cached for courses that repeat each other."""
     fixed, heads, length = np.array(near), np.array(below), bond.length
     if ends.length <= length * (1.0 + SAME):
         return Laid(np.zeros(0), CUT * (1.0 - ends.length / length) ** 2)
@@ -135,7 +136,7 @@ def _laid(ends: RunEnds, bond: CourseBond, near: tuple[float, ...], below: tuple
 
 
 def _places(ends: RunEnds, bond: CourseBond, avoid: np.ndarray) -> np.ndarray:
-    """Where heads may be [m], in order, each once."""
+    """Return the possible places of head joints [m], in order, each once."""
     length, first, period = bond.length, bond.first, bond.period
     count = math.ceil(ends.length / length) + 1
     steps = np.arange(-1, math.ceil(ends.length / period) + 2) * period
@@ -152,7 +153,7 @@ def _places(ends: RunEnds, bond: CourseBond, avoid: np.ndarray) -> np.ndarray:
 
 
 def _shortest(ends: RunEnds, bond: CourseBond, places: np.ndarray, costs: np.ndarray) -> Laid | None:
-    """The cheapest sequence of heads, pieces between SHORTEST and the whole of a block; None: there is none."""
+    """Find the cheapest sequence of head joints with pieces between SHORTEST and a whole block; None: there is none."""
     length, shares, headers = bond.length, bond.shares, bond.has_headers
     nodes = np.concatenate([[ends.start], places, [ends.stop]])
     costs = np.concatenate([[0.0], costs, [0.0]])

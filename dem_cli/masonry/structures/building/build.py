@@ -1,4 +1,4 @@
-"""Blocks of a building: elevations of its walls set up on their axes, cut where they meet askew, floors, the base."""
+"""Generate the blocks of a building: walls on their axes, cut where they meet askew, floors and the base."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Planes = list[tuple[np.ndarray, float]]
 
 
 def build(building: Building) -> list[Block]:
-    """Blocks in local places, the base first, then the walls as they are named, course by course, then the floors."""
+    """Generate the blocks of a building: the base first, then the walls in order, course by course, then the floors."""
     plan = plan_of(building)
     floors = floors_of(building, plan)
     elevations = _elevations(building, plan, floors)
@@ -42,7 +42,7 @@ def build(building: Building) -> list[Block]:
 
 
 def figures(building: Building) -> list[tuple[str, str]]:
-    """What was drawn for walls of irregular stones, for `dem check`."""
+    """Describe the stones drawn at random for walls of irregular stones, for `dem check`."""
     plan = plan_of(building)
     walls = _elevations(building, plan, floors_of(building, plan))
     tilings = [(wall.axis.name, _irregular(building, plan, wall)) for wall in walls]
@@ -50,7 +50,7 @@ def figures(building: Building) -> list[tuple[str, str]]:
 
 
 def loose_ends(building: Building) -> str:
-    """The key by which stones may slide out of jambs; "": none. Ends of walls are dressed."""
+    """Return the key by which stones may slide out of jambs; "": none. Ends of walls are dressed."""
     for i, wall in enumerate(building.walls):
         pattern = wall.pattern or building.pattern
         if pattern is not None and pattern.jambs == "rubble" and wall.openings:
@@ -59,14 +59,14 @@ def loose_ends(building: Building) -> str:
 
 
 def _elevations(building: Building, plan: Plan, floors: Floors) -> list[WallCourses]:
-    """What the walls are laid from. Raises KeyProblem: gables in each other's way."""
+    """Create the elevations of all walls. Raises KeyProblem: gables that obstruct each other."""
     _check_gables(building, plan)
     passes = _passes(plan, floors.pockets)
     return [_elevation(building, plan, wall, floors.pockets.get(wall, []), passes) for wall in range(len(plan.axes))]
 
 
 def _irregular(building: Building, plan: Plan, wall: WallCourses) -> IrregularWall | None:
-    """A wall that a pattern fills; None: it is laid in regular courses."""
+    """Return the irregular masonry of a wall with a pattern; None: it is laid in regular courses."""
     pattern = wall.table.pattern or building.pattern
     if pattern is None:
         return None
@@ -74,7 +74,7 @@ def _irregular(building: Building, plan: Plan, wall: WallCourses) -> IrregularWa
 
 
 def _check_gables(building: Building, plan: Plan) -> None:
-    """Raises KeyProblem where two gables would stand in each other's way, over the place where their walls meet."""
+    """Raise KeyProblem where two gables collide above the junction of their walls."""
     for junction in plan.junctions:
         one, other = (building.walls[wall] for wall in junction.walls)
         if one.gable is not None and other.gable is not None:
@@ -83,7 +83,7 @@ def _check_gables(building: Building, plan: Plan) -> None:
 
 
 def _passes(plan: Plan, pockets: dict[int, list[Pocket]]) -> Passes:
-    """Which wall passes in each course: in turn, but none through a wall on whose other face a floor bears there."""
+    """Decide which wall passes in each course: in turn, but none into a floor pocket on the far face of the other."""
     held = {
         (id(junction), pocket.course): 1 - junction.of(wall)
         if pocket.across[1] <= pocket.across[0]
@@ -101,7 +101,7 @@ def _passes(plan: Plan, pockets: dict[int, list[Pocket]]) -> Passes:
 
 
 def _behind(plan: Plan, wall: int, junction: Junction, pocket: Pocket) -> bool:
-    """Whether a wall that ends at this one would come out in a pocket on its other face."""
+    """Test whether a wall that ends at this one would come out in a floor pocket on its other face."""
     mine = junction.of(wall)
     other, end = junction.walls[1 - mine], junction.ends[1 - mine]
     low, high = plan.zone(wall, junction)
@@ -113,7 +113,7 @@ def _behind(plan: Plan, wall: int, junction: Junction, pocket: Pocket) -> bool:
 
 
 def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pocket], passes: Passes) -> WallCourses:
-    """What a wall is laid from, courses of a gable above the others."""
+    """Create the elevation of a wall, with the courses of a gable above the others."""
     table = building.walls[wall]
     courses = [each.courses or building.courses for each in building.walls]
     levels = building.levels[: courses[wall] + 1]
@@ -130,7 +130,7 @@ def _elevation(building: Building, plan: Plan, wall: int, pockets: Sequence[Pock
 
 
 def _with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:
-    """Bed joints with those of a gable: about as high as other courses, the last one at the tip; stepped: below it."""
+    """Add the bed joints of a gable, about as high as other courses, the last one at the tip; stepped: below it."""
     if gable.edges == "stepped":
         return with_gable(levels, gable, course)
     count = max(1, round(gable.height / course))
@@ -138,7 +138,7 @@ def _with_gable(levels: np.ndarray, gable: Gable, course: float) -> np.ndarray:
 
 
 def _blocks(building: Building, plan: Plan, wall: WallCourses) -> list[Block]:
-    """Blocks of a wall in the places of the plan."""
+    """Generate the blocks of a wall at their places in the plan."""
     irregular = _irregular(building, plan, wall)
     if irregular is None:
         return _set_up(wall, wall.stones())
@@ -147,7 +147,7 @@ def _blocks(building: Building, plan: Plan, wall: WallCourses) -> list[Block]:
 
 
 def _set_up(elevation: WallCourses, named: Sequence[tuple[str, Stone]], cut: bool = True) -> list[Block]:
-    """Stones of a wall in the places of the plan, cut where it ends askew."""
+    """Place the stones of a wall in the plan, cut where it ends askew."""
     if not named:
         return []
     parts = [part for _, stone in named for part in stone.parts]
@@ -165,7 +165,7 @@ def _set_up(elevation: WallCourses, named: Sequence[tuple[str, Stone]], cut: boo
 
 
 def _planes(elevation: WallElevation, course: int, part: Part) -> Planes:
-    """Planes that a part is cut along: ends of its run that are askew and that it reaches into."""
+    """Return the cutting planes of a part: skew ends of its run that it reaches into."""
     if not course:
         return []
     (low, foot), (high, head) = part.shape.min(axis=0).tolist(), part.shape.max(axis=0).tolist()
@@ -188,7 +188,7 @@ def _planes(elevation: WallElevation, course: int, part: Part) -> Planes:
 
 
 def _run_of(runs: Sequence[Run], low: float, high: float, reach: float) -> Run:
-    """The run of a part, from where to where along the wall: on both sides of a wall that is askew two may overlap."""
+    """Find the run of a part between two places along the wall; at a skew junction two runs may overlap."""
 
     def beyond(run: Run) -> tuple[float, float]:
         before, after = low - float(run.start.min()), float(run.stop.max()) - high
@@ -198,7 +198,7 @@ def _run_of(runs: Sequence[Run], low: float, high: float, reach: float) -> Run:
 
 
 def _turn(axis: PlanAxis) -> Callable[[Polyhedron], Polyhedron]:
-    """From coordinates of a wall to those of the plan."""
+    """Return the transformation of polyhedra from coordinates of a wall to those of the plan."""
 
     def turned(solid: Polyhedron) -> Polyhedron:
         x, y, z = solid.vertices.T
@@ -213,14 +213,14 @@ def _slab(slab: Slab) -> Block:
 
 
 def upright(outline: np.ndarray, low: float, high: float) -> Polyhedron:
-    """A prism over an outline in plan (n, 2), counter-clockwise, from one height to another."""
+    """Create a prism over an outline in plan (n, 2), counter-clockwise, from one height to another."""
     solid = polyhedron.prism(outline[::-1], low, high)  # drawn in x and z, from y to y
     x, up, y = solid.vertices.T
     return Polyhedron(np.column_stack([x, y, up]), tuple(face[::-1] for face in solid.faces))
 
 
 def _base(building: Building, elevations: Sequence[WallElevation]) -> list[Block]:
-    """The fixed blocks below."""
+    """Create the fixed blocks below the walls."""
     depth, beyond = building.base_depth, building.base_extension
     if building.base == "none":
         return []
@@ -236,7 +236,7 @@ def _base(building: Building, elevations: Sequence[WallElevation]) -> list[Block
 
 
 def _footprint(elevation: WallElevation, beyond: float) -> np.ndarray:
-    """Corners of the ground below a wall and so far beyond it [m], (4, 2)."""
+    """Return the corners of the ground below a wall, with a margin around it [m], (4, 2)."""
     axis = elevation.axis
     (low, high), (right, left) = elevation.span, axis.faces
     local = np.array(
@@ -251,7 +251,7 @@ def _footprint(elevation: WallElevation, beyond: float) -> np.ndarray:
 
 
 def _welded(blocks: Sequence[Block]) -> list[Block]:
-    """The same with coordinates that differ by round-off made the same number: faces that touch share it."""
+    """Weld blocks: coordinates that differ by round-off become equal, so that touching faces share them."""
     parts = [part for block in blocks for part in block.parts]
     points = np.concatenate([part.vertices for part in parts])
     gap = WELD * float(np.ptp(points, axis=0).max())

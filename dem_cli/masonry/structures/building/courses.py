@@ -1,4 +1,4 @@
-"""Courses of one wall of a building: stones around openings and pockets, under a gable."""
+"""Lay the courses of one wall of a building: stones around openings and pockets, under a gable."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ WELD = 1e-10  # of a block: round-off of corners that are the same
 
 
 class Stretch(NamedTuple):
-    """A part of a run with the same heights free all along."""
+    """Stretch of a run along which the same heights are free of openings."""
 
     left: float
     right: float
@@ -33,13 +33,13 @@ class Stretch(NamedTuple):
     across: tuple[float, float]
 
     def ends(self, askew: dict[float, float]) -> RunEnds:
-        """Its ends; askew: how far stones go on beyond the middle of an end, by its place."""
+        """Return the ends of the stretch; askew: how far stones extend beyond the middle of an end, by its place."""
         start, stop = askew.get(self.left, 0.0), askew.get(self.right, 0.0)
         return RunEnds(self.left + start, self.right - stop, start, stop)
 
 
 class LaidPiece(NamedTuple):
-    """A rectangle of masonry in elevation, before openings with arches and gables are cut."""
+    """Rectangle of masonry in elevation, before openings with arches and gables are cut."""
 
     box: Box
     across: tuple[float, float]  # of the wall, or what a floor leaves of it [m]
@@ -47,11 +47,11 @@ class LaidPiece(NamedTuple):
 
 
 class WallCourses(WallElevation):
-    """A wall in courses."""
+    """Wall of a building laid in courses."""
 
     @cached_property
     def first(self) -> float:
-        """A place to which the heads of odd courses belong; those of even ones lie between them.
+        """Reference place of the head joints of odd courses; those of even ones lie between them.
 
         Of those that suit an end of a run, the one with which the lowest courses cost least, openings left aside.
         """
@@ -78,16 +78,16 @@ class WallCourses(WallElevation):
         return sum(laid(self.ends(run, course), bond, near).cost for run in self.runs[course])
 
     def pattern(self, course: int) -> Pattern:
-        """What the bond lays in a course."""
+        """Return the bond pattern of a course."""
         return pattern_of(self.keys.bond or "running", self.keys.offset, course, self.length)
 
     def bond(self, course: int, first: float) -> CourseBond:
-        """Where the bond has blocks and heads in a course, begun at a place of the lowest one."""
+        """Return the periodic bond of a course, begun at a place of the lowest one."""
         pattern = self.pattern(course)
         return CourseBond(pattern, self.length, first + pattern.start * self.length)
 
     def _laid(self, ends: RunEnds, course: int) -> Laid:
-        """A stretch of a course in blocks."""
+        """Divide a stretch of a course into blocks."""
         fixed, apart = self.joints(course - 1) + self.joints(course + 1), 0.0
         if course:
             apart = clearance(self.pattern(course - 1), self.pattern(course))
@@ -97,13 +97,13 @@ class WallCourses(WallElevation):
 
     @cached_property
     def _heads(self) -> dict[int, list[float]]:
-        """Heads of courses that are laid [m]."""
+        """Head joints of the courses laid so far [m]."""
         return {}
 
     # -- courses ---------------------------------------------------------------------------------------------------
 
     def stones(self) -> list[tuple[str, Stone]]:
-        """All stones by name, course by course from below, what is over openings last.
+        """Return all stones by name, course by course from below, lintels and arches last.
 
         Raises KeyProblem for a piece too small.
         """
@@ -114,18 +114,18 @@ class WallCourses(WallElevation):
         return found + [(name, stone) for (name, _), stone in zip(over, exact[len(laid_ones) :], strict=True)]
 
     def laid_stones(self) -> list[Stone]:
-        """Stones of all courses as they are laid, before small ones become parts of others."""
+        """Lay the stones of all courses, before small ones are merged with others."""
         return [stone for course in range(len(self.runs)) for stone in self._course(course)]
 
     def _welded(self, stones: Sequence[Stone]) -> list[Stone]:
-        """With the same corners where they share them, exactly."""
+        """Make shared corners of stones exactly equal."""
         if not any(len(void.joints) for void in self.voids):
             return list(stones)
         shapes = iter(cuts.welded([part.shape for stone in stones for part in stone.parts], WELD * self.length))
         return [one._replace(parts=tuple(Part(next(shapes), part.across) for part in one.parts)) for one in stones]
 
     def over_openings(self) -> Iterator[tuple[str, Stone]]:
-        """Lintels and voussoirs."""
+        """Yield lintels and voussoirs."""
         for i, (opening, void) in enumerate(zip(self.table.openings, self.voids, strict=True)):
             if opening.lintel is not None and opening.lintel_box is not None:
                 x0, y0, x1, y1 = opening.lintel_box
@@ -137,7 +137,7 @@ class WallCourses(WallElevation):
                 yield f"{self.axis.name}-arch-{i + 1}-{n + 1}", stone
 
     def _course(self, course: int) -> Iterator[Stone]:
-        """Stones of a course; those at ends of runs that are askew go on to the outermost place there."""
+        """Yield the stones of a course; at skew ends of runs they extend to the outermost place."""
         low, high = (float(level) for level in self.levels[course : course + 2])
         full, small = self.length * (high - low), SMALL * self.length
         arches = [self.voids[i] for i, beside in self._arches if course in beside and self._is_free(i, course)]
@@ -155,7 +155,7 @@ class WallCourses(WallElevation):
                 yield from [stone] if piece.whole else in_leaves(stone, depths_of(self.across, self.keys.leaves))
 
     def _through(self, course: int) -> list[LaidPiece]:
-        """Pieces of a course, with those that go through all leaves.
+        """Return the pieces of a course, marked where they go through all leaves.
 
         Headers, a share of the others, and all that touch another wall, a free end or a floor.
         """
@@ -172,14 +172,14 @@ class WallCourses(WallElevation):
         ]
 
     def _is_held(self, piece: LaidPiece) -> bool:
-        """Whether a piece touches another wall, an end of its own one, or a floor."""
+        """Test whether a piece touches another wall, an end of its own wall, or a floor."""
         small = SMALL * self.length
         near = any(piece.box[0] <= b + small and piece.box[2] >= a - small for a, b in self._crossed)
         return near or piece.across != self.across
 
     @cached_property
     def _crossed(self) -> list[tuple[float, float]]:
-        """From where to where other walls cross this one in some course, and its ends in any [m]."""
+        """Intervals along the wall where other walls cross it in some course, and its ends in any [m]."""
         starts, stops = ([end for runs in self.runs for end in each(runs)] for each in (_first_ends, _last_ends))
         found = [(min(starts), max(starts)), (min(stops), max(stops))]
         for runs in self.runs:
@@ -188,13 +188,13 @@ class WallCourses(WallElevation):
 
     @cached_property
     def _arches(self) -> list[tuple[int, range]]:
-        """Openings under arches, and the courses that they interrupt."""
+        """List the openings under arches with the courses that they interrupt."""
         return [
             (i, self._beside(void.reach[1], void.reach[3])) for i, void in enumerate(self.voids) if len(void.joints)
         ]
 
     def _is_free(self, opening: int, course: int) -> bool:
-        """Whether an arch lies within one run of a course. Raises KeyProblem where it does not."""
+        """Test whether an arch lies within one run of a course. Raises KeyProblem where it does not."""
         left, _, right, _ = self.voids[opening].reach
         small = SMALL * self.length
         for run in self.runs[course]:
@@ -204,7 +204,7 @@ class WallCourses(WallElevation):
         raise KeyProblem(message, *self._key(opening))
 
     def _boxes(self, run: Run, course: int) -> Iterator[LaidPiece]:
-        """Blocks of a run."""
+        """Yield the blocks of a run."""
         ends, holes = self.ends(run, course), self.holes(course)
         outer = ends.start - ends.start_askew, ends.stop + ends.stop_askew
         askew = {outer[0]: ends.start_askew, outer[1]: ends.stop_askew}
@@ -222,7 +222,7 @@ class WallCourses(WallElevation):
         yield from self._tips(run, holes, course)
 
     def _tips(self, run: Run, holes: Sequence[Hole], course: int) -> Iterator[LaidPiece]:
-        """Thin leftovers over and under arches, which become parts of other stones."""
+        """Yield thin leftovers over and under arches, which become parts of other stones."""
         low, high = (float(level) for level in self.levels[course : course + 2])
         for hole in holes:
             if hole.arch is not None and run.start.max() <= hole.left and hole.right <= run.stop.min():
@@ -232,11 +232,11 @@ class WallCourses(WallElevation):
                         yield LaidPiece((a, low, b, high), self.across, True)
 
     def _is_tip(self, course: int) -> bool:
-        """Whether it is the course under the tip of a gable."""
+        """Test whether a course lies under the tip of a gable."""
         return self.top is not None and course == len(self.runs) - 1
 
     def _stretches(self, run: Run, ends: RunEnds, course: int) -> list[Stretch]:
-        """A run, cut where what is free changes. Raises KeyProblem: an opening in another wall, slivers beside it."""
+        """Split a run where its free heights change."""
         small = SMALL * self.length
         holes = [h for h in self.holes(course) if h.left < ends.stop - small and h.right > ends.start + small]
         inner = ends.start + ends.start_askew, ends.stop - ends.stop_askew
@@ -265,12 +265,12 @@ class WallCourses(WallElevation):
         return found
 
     def _left_over(self, across: Sequence[tuple[float, float]]) -> tuple[float, float]:
-        """What pockets leave of the thickness."""
+        """Return the part of the thickness that pockets leave."""
         right, left = self.across
         return max([right, *(a for a, _ in across)]), min([left, *(b for _, b in across)])
 
     def _free(self, low: float, high: float, over: Sequence[Hole]) -> tuple[tuple[float, float], ...]:
-        """Heights of a course that holes leave."""
+        """Return the intervals of height of a course that holes leave free."""
         found, at = [], low
         for hole in (*sorted(over, key=lambda each: each.low), None):
             until = high if hole is None else hole.low
@@ -280,7 +280,7 @@ class WallCourses(WallElevation):
         return tuple(found)
 
     def _check_lengths(self, row: Sequence[Stretch], course: int, holes: Sequence[Hole]) -> None:
-        """Raises KeyProblem where a stretch is too short for a block."""
+        """Raise KeyProblem where a stretch is too short for a block."""
         least = SHORTEST * self.length * (1.0 - SMALL)
         for stretch in row:
             length = stretch.right - stretch.left

@@ -1,4 +1,4 @@
-"""Elevation of one wall of a building: openings, pockets of floors, the slopes of a gable, joints that are given."""
+"""Elevation of one wall of a building: openings, floor pockets, gable slopes, and joints fixed beforehand."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from dem_cli.masonry.structures.building.table import PlanWall
 from dem_cli.masonry.structures.course_layout import Interruption, interruption
 from dem_cli.masonry.structures.voids import Void
 
-SMALL = 1e-6  # of a block: shorter is nothing
+SMALL = 1e-6  # of a block: a shorter length counts as zero
 
 
 Box = tuple[float, float, float, float]  # left, low, right, high [m]
 
 
 class Hole(NamedTuple):
-    """A rectangle of the elevation without whole blocks of the wall: an opening, its lintel, its arch [m]."""
+    """Rectangle of the elevation without whole blocks: an opening, its lintel, its arch [m]."""
 
     left: float
     right: float
@@ -37,7 +37,7 @@ class Hole(NamedTuple):
 
 
 class Pocket(NamedTuple):
-    """A stretch of one course where a floor leaves the wall less than its thickness, or nothing [m]."""
+    """Pocket of a floor: a stretch of one course where it leaves the wall part of its thickness, or none [m]."""
 
     left: float
     right: float
@@ -47,7 +47,7 @@ class Pocket(NamedTuple):
 
 @dataclass(frozen=True)
 class WallElevation:
-    """What a wall is laid around. Lengths along it from the start of its axis, heights from its foot [m]."""
+    """Elevation of a wall before it is laid; lengths along its axis, heights from its foot [m]."""
 
     number: int  # of the wall, in the case
     axis: PlanAxis
@@ -61,20 +61,20 @@ class WallElevation:
 
     @cached_property
     def span(self) -> tuple[float, float]:
-        """The outermost places of the wall."""
+        """Outermost places of the wall along its axis [m]."""
         low = min(float(run.start.min()) for runs in self.runs for run in runs)
         return low, max(float(run.stop.max()) for runs in self.runs for run in runs)
 
     @cached_property
     def voids(self) -> list[Void]:
-        """Openings with what is built over them. Raises KeyProblem where one does not lie within the wall."""
+        """Openings with lintels and arches. Raises KeyProblem where one does not lie within the wall."""
         found = [opening.void.fitted(self.levels) for opening in self.table.openings]
         for i, void in enumerate(found):
             self._check(void.reach, i)
         return found
 
     def holes(self, course: int) -> list[Hole]:
-        """What openings take of a course."""
+        """Return the holes that openings cut out of a course."""
         return self._holes[course]
 
     @cached_property
@@ -93,33 +93,33 @@ class WallElevation:
         return found
 
     def _beside(self, low: float, high: float) -> range:
-        """Courses between two heights."""
+        """Return the courses between two heights."""
         small = SMALL * self.length
         first = int(np.searchsorted(self.levels, low + small, side="right")) - 1
         return range(max(first, 0), min(int(np.searchsorted(self.levels, high - small)), len(self.runs)))
 
     @cached_property
     def outline(self) -> tops.Profile | None:
-        """The slopes of a gable; None: there is none."""
+        """Slopes of a gable; None: there is none."""
         gable = self.table.gable
         return None if gable is None else tops.gable_profile(gable, *self.span, self.eaves)
 
     @property
     def top(self) -> tops.Profile | None:
-        """Along which courses are cut; None: the top is level, or stepped."""
+        """Profile along which the uppermost courses are cut; None: the top is level, or stepped."""
         return None if self.is_stepped else self.outline
 
     @property
     def is_stepped(self) -> bool:
-        """Whether it has a gable in steps."""
+        """Tell whether the wall has a stepped gable."""
         return self.table.gable is not None and self.table.gable.edges == "stepped"
 
     def roof(self, height: float) -> tuple[float, float]:
-        """From where to where the wall goes at a height: under a gable it narrows."""
+        """Return both ends of the wall at a height: under a gable it narrows."""
         return self.span if self.outline is None else tops.level_span(self.outline, height)
 
     def roof_of(self, course: int) -> tuple[tuple[float, float], tuple[float, float]]:
-        """The same at the foot and at the head of a course; of a step in its middle."""
+        """Return both ends of the wall at the foot and at the head of a course; of a step at mid-height."""
         low, high = (float(level) for level in self.levels[course : course + 2])
         if self.is_stepped and low >= self.eaves:
             low = high = 0.5 * (low + high)
@@ -141,7 +141,7 @@ class WallElevation:
     # -- joints that are given before any block is laid ---------------------------------------------------------
 
     def joints(self, course: int) -> list[float]:
-        """Upright joints of a course that are there however it is laid: ends of runs, jambs, pockets."""
+        """Return the fixed head joints of a course: ends of runs, jambs, pockets [m]."""
         if not 0 <= course < len(self.runs):
             return []
         found = [float(x) for run in self.runs[course] for line in run for x in set(line.tolist())]
@@ -155,7 +155,7 @@ class WallElevation:
         return [pocket for pocket in self.pockets if pocket.course == course]
 
     def ends(self, run: Run, course: int) -> RunEnds:
-        """Ends of a run, with what they are askew in plan and along the slopes of a gable."""
+        """Return the ends of a run with their skew in plan and along the slopes of a gable."""
         foot, head = self.roof_of(course)
         start, stop = np.maximum(run.start, foot[0]), np.minimum(run.stop, foot[1])
         inner = max(float(start.max()), head[0]), min(float(stop.min()), head[1])
@@ -165,6 +165,6 @@ class WallElevation:
 
     @property
     def across(self) -> tuple[float, float]:
-        """Its two faces across, right and left of the axis [m]."""
+        """Right and left face of the wall, measured from the axis [m]."""
         right, left = self.axis.faces.tolist()
         return right, left

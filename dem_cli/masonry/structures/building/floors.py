@@ -1,4 +1,4 @@
-"""Floors of a building: plates and beams, and the pockets that they need in the walls on which they bear."""
+"""Generate the floors of a building: plates and beams, and their pockets in the bearing walls."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from dem_cli.masonry.structures.building.table import Building, Floor
 
 
 def floors_of(building: Building, plan: Plan) -> Floors:
-    """Plates and beams with their pockets. Raises KeyProblem where there is no room for one."""
+    """Lay all floors of a building with their pockets. Raises KeyProblem where there is no room for one."""
     found = Floors([], {})
     rooms = rooms_of(plan) if building.floors else []
     for i, floor in enumerate(building.floors):
@@ -35,7 +35,7 @@ def floors_of(building: Building, plan: Plan) -> Floors:
 
 
 def _check_slabs(before: Sequence[Slab], after: Sequence[Slab], i: int) -> None:
-    """Raises KeyProblem where a floor would lie in the same place as an earlier one."""
+    """Raise KeyProblem where a floor would overlap an earlier one."""
     for slab in after:
         small = SMALL * float(np.ptp(slab.outline, axis=0).max())
         for other in before:
@@ -47,7 +47,7 @@ def _check_slabs(before: Sequence[Slab], after: Sequence[Slab], i: int) -> None:
 
 
 def _room(plan: Plan, rooms: Sequence[Room], floor: Floor, on: Sequence[int], i: int) -> Room:
-    """The room that all the walls named bound."""
+    """Find the room that is bounded by all the named walls. Raises KeyProblem where it is not unique."""
     fitting = [room for room in rooms if set(on) <= {side.wall for side in room}]
     if len(fitting) == 1:
         return fitting[0]
@@ -64,7 +64,7 @@ def _room(plan: Plan, rooms: Sequence[Room], floor: Floor, on: Sequence[int], i:
 
 
 def _advice(plan: Plan, rooms: Sequence[Room], floor: Floor) -> str:
-    """Of each of these rooms the fewest walls that tell it from the others, to be named beside those of the floor."""
+    """Suggest the fewest further walls that identify each of these rooms."""
     walls = [{plan.axes[side.wall].name for side in room if side.wall is not None} - {*floor.on} for room in rooms]
     found = []
     for own in walls:
@@ -77,7 +77,7 @@ def _advice(plan: Plan, rooms: Sequence[Room], floor: Floor) -> str:
 
 
 def _bearings(building: Building, floor: Floor, on: Sequence[int], i: int) -> dict[int, float]:
-    """How far it reaches into each wall [m]."""
+    """Return the bearing length in each wall [m]. Raises KeyProblem where it exceeds the thickness."""
     found = {}
     for wall in on:
         thickness = building.walls[wall].thickness or building.thickness
@@ -90,7 +90,7 @@ def _bearings(building: Building, floor: Floor, on: Sequence[int], i: int) -> di
 
 
 def _layer(building: Building, floor: Floor, i: int) -> tuple[float, float, range]:
-    """From where to where it goes up, and the courses beside it."""
+    """Return lower and upper level of a floor, and the courses beside it."""
     levels, small = building.levels, SMALL * building.block[1]
     first = int(np.abs(levels - floor.z).argmin())
     if floor.height is None:
@@ -109,7 +109,7 @@ def _layer(building: Building, floor: Floor, i: int) -> tuple[float, float, rang
 
 
 def _check_walls(building: Building, floor: Floor, i: int, layer: tuple[float, float, range]) -> None:
-    """Raises KeyProblem where a wall does not reach up to a floor, has a gable there, or a plate meets a lintel."""
+    """Raise KeyProblem where a wall is too low for a floor, has a gable there, or a plate meets a lintel."""
     low, high, courses = layer
     small = SMALL * building.block[1]
     for k, name in enumerate(floor.bears_on):
@@ -140,7 +140,7 @@ def _outline(bed: Bed, gap: float) -> np.ndarray:
 
 
 def _plate(found: Floors, bed: Bed) -> None:
-    """One plate over the whole room, with pockets all along the walls that it bears on."""
+    """Lay one plate over the whole room, with pockets all along its bearing walls."""
     floor = bed.floor
     outline = _outline(bed, floor.gap)
     met = bed.wall_under(outline, list(bed.bearing))

@@ -1,4 +1,4 @@
-"""Walls of a building in irregular stones: dressed ones where walls meet and at free ends, a pattern between them.
+"""Build walls of irregular stones: dressed stones where walls meet and at free ends, a pattern between them.
 
 The dressed stones are those of the regular courses that touch another wall or an end, long and short in turn, and
 those beside floors. What is left, without openings, is the panel that a pattern fills.
@@ -36,7 +36,7 @@ SQUARE = 1e-9  # cosine of the angle of walls that meet squarely
 
 
 class Zone(NamedTuple):
-    """Where another wall lies in this one [m]."""
+    """Zone of a wall that another wall occupies [m]."""
 
     left: float
     right: float
@@ -45,7 +45,7 @@ class Zone(NamedTuple):
 
 
 def zones_of(building: Building, plan: Plan, wall: WallCourses) -> list[Zone]:
-    """Other walls in one. Raises KeyProblem where a gable would have to be cut along another wall, or is in steps."""
+    """Find the zones of other walls in one. Raises KeyProblem where a gable would have to be cut along another wall."""
     found, own = [], len(wall.levels) - 1 if wall.table.gable is None else wall.table.courses or building.courses
     key = ("walls", wall.number, "gable")
     if wall.is_stepped:
@@ -66,7 +66,7 @@ def zones_of(building: Building, plan: Plan, wall: WallCourses) -> list[Zone]:
 
 
 class WallStones(NamedTuple):
-    """Stones of a wall by name."""
+    """Stones of a wall by name, dressed ones and others."""
 
     dressed: list[NamedStone]  # to be cut where walls meet askew
     others: list[NamedStone]
@@ -74,7 +74,7 @@ class WallStones(NamedTuple):
 
 @dataclass(frozen=True)
 class IrregularWall:
-    """A wall of a building that a pattern fills."""
+    """Wall of a building that a pattern of irregular stones fills."""
 
     courses: WallCourses
     zones: Sequence[Zone]
@@ -82,7 +82,7 @@ class IrregularWall:
     seed: int
 
     def stones(self) -> WallStones:
-        """All stones. Raises KeyProblem for what the pattern cannot fill."""
+        """Generate all stones. Raises KeyProblem for what the pattern cannot fill."""
         prefix = f"{self.courses.axis.name}-dressed"
         dressed = [(f"{prefix}-{name}", stone) for name, stone in numbered(self._kept)]
         jambs = [
@@ -95,7 +95,7 @@ class IrregularWall:
 
     @cached_property
     def regular(self) -> WallCourses:
-        """The wall in regular courses, without openings and gable."""
+        """Wall in regular courses, without openings and gable."""
         wall = self.courses
         count = int(np.searchsorted(wall.levels, wall.eaves - self.small))
         table = wall.table.model_copy(update={"openings": (), "gable": None})
@@ -103,7 +103,7 @@ class IrregularWall:
 
     @property
     def small(self) -> float:
-        """Shorter is nothing [m]."""
+        """Length below which a difference counts as zero [m]."""
         return SMALL * self.courses.length
 
     @cached_property
@@ -112,12 +112,12 @@ class IrregularWall:
 
     @cached_property
     def _intervals(self) -> list[list[Span]]:
-        """From where to where each course is dressed [m], in order, apart from each other."""
+        """Intervals of dressed masonry in each course [m], in order, apart from each other."""
         return [self._of_course(course) for course in range(len(self.regular.runs))]
 
     @cached_property
     def _kept(self) -> list[Stone]:
-        """Stones of which a part lies in a stretch that is dressed."""
+        """Stones of which a part lies in a dressed stretch."""
         return [stone for stone in self._laid if any(self._is_dressed(part) for part in stone.parts)]
 
     def _is_dressed(self, part: Part) -> bool:
@@ -125,12 +125,12 @@ class IrregularWall:
         return any(a - self.small <= left and right <= b + self.small for a, b in self._intervals[course])
 
     def _place(self, part: Part) -> tuple[float, float, int]:
-        """From where to where a part goes along the wall, and in which course from 0."""
+        """Return both ends of a part along the wall and its course, from 0."""
         (left, low), (right, high) = part.shape.min(axis=0).tolist(), part.shape.max(axis=0).tolist()
         return left, right, int(np.searchsorted(self.regular.levels, 0.5 * (low + high))) - 1
 
     def _of_course(self, course: int) -> list[Span]:
-        """Stretches of a course that are dressed: a gap shorter than a block is as well."""
+        """Return the dressed stretches of a course; a gap shorter than a block is dressed as well."""
         spans = [(left, right) for left, right in self._ends_and_zones[course] if right - left > self.small]
         spans += [(pocket.left, pocket.right) for pocket in self.courses.pockets if pocket.course == course]
         for stone in self._laid:
@@ -141,7 +141,7 @@ class IrregularWall:
         return _joined(spans, self.courses.length * (1.0 - SMALL), self.small)
 
     def _touches(self, place: tuple[float, float, int]) -> bool:
-        """Whether a part [left, right, course] touches another wall or an end."""
+        """Test whether a part [left, right, course] touches another wall or an end."""
         left, right, course = place
         return any(left <= b + self.small and right >= a - self.small for a, b in self._ends_and_zones[course])
 
@@ -150,14 +150,14 @@ class IrregularWall:
         return [self._given(course) for course in range(len(self.regular.runs))]
 
     def _given(self, course: int) -> list[Span]:
-        """Both ends of a course and the walls that it meets."""
+        """Return both ends of a course and the walls that meet it, as intervals."""
         low, high = self.courses.span
         runs = self.regular.runs[course]
         met = [(max(z.left, low), min(z.right, high)) for z in self.zones if course < z.courses]
         return [(low, float(runs[0].start.max())), (float(runs[-1].stop.min()), high), *met]
 
     def _dressed_boxes(self) -> Iterator[np.ndarray]:
-        """Rectangles that are dressed: first what is so in many courses at once, then what stands out of it."""
+        """Yield dressed rectangles: first those common to many courses, then what protrudes from them."""
         low, high = self.courses.span
         inner = [((z.left, z.right), min(z.courses, len(self._intervals))) for z in self.zones if z.inner]
         whole = [((low, low), len(self._intervals)), ((high, high), len(self._intervals)), *inner]
@@ -175,7 +175,7 @@ class IrregularWall:
                     yield _box(a, levels[course], b, levels[course + 1])
 
     def _core(self, span: Span, count: int) -> Span:
-        """What is dressed around a stretch in all of so many courses."""
+        """Return the interval around a stretch that is dressed in each of the lowest `count` courses."""
         middle = 0.5 * (span[0] + span[1])
         around = [
             next((a, b) for a, b in found if a - self.small <= middle <= b + self.small)
@@ -189,14 +189,14 @@ class IrregularWall:
 
     @cached_property
     def _jambs(self) -> list[tuple[str, np.ndarray]]:
-        """Stones beside openings by name."""
+        """Dressed stones beside openings by name."""
         return jamb_stones(self.courses, self._boxes) if self.pattern.jambs == "dressed" else []
 
     # -- the pattern ----------------------------------------------------------------------------------------------
 
     @cached_property
     def _panel(self) -> WallPanel:
-        """What the pattern fills."""
+        """Panel that the pattern fills."""
         wall, (low, high) = self.courses, self.courses.span
         outline = _box(low, 0.0, high, wall.eaves)
         if wall.table.gable is not None:
@@ -238,7 +238,7 @@ class IrregularWall:
         return tiling
 
     def _of_pattern(self, drawn: Callable[[], T]) -> T:
-        """What the pattern makes; its mistakes with the name of the wall."""
+        """Call a function of the pattern and add the name of the wall to its errors."""
         try:
             return drawn()
         except KeyProblem as problem:
@@ -259,7 +259,7 @@ def _box(x0: float, y0: float, x1: float, y1: float) -> np.ndarray:
 
 
 def _joined(spans: Sequence[Span], gap: float, small: float) -> list[Span]:
-    """Stretches in order, one where they are nearer than a gap."""
+    """Merge intervals that are closer than a gap, in order."""
     found: list[Span] = []
     for left, right in sorted(spans):
         if right - left <= small:
@@ -272,7 +272,7 @@ def _joined(spans: Sequence[Span], gap: float, small: float) -> list[Span]:
 
 
 def _without(span: Span, taken: Sequence[Span], small: float) -> list[Span]:
-    """What of a stretch others leave."""
+    """Subtract intervals from an interval."""
     found, at = [], span[0]
     for left, right in sorted(taken):
         if left - at > small and at < span[1]:

@@ -1,4 +1,4 @@
-"""Dressed jambs: squared stones beside the openings of a wall of irregular stones, long and short in turn."""
+"""Dressed jambs: squared stones beside the openings of a wall of irregular stones, alternately long and short."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SHORT = 0.5  # of the length of a block: the short ones, and the least that is l
 
 
 def jamb_stones(wall: WallElevation, taken: Sequence[np.ndarray]) -> list[tuple[str, np.ndarray]]:
-    """Stones beside all openings of a wall by name, with their shapes, (4, 2); taken: what is dressed already.
+    """Generate the jamb stones of all openings of a wall by name, with shapes (4, 2); taken: shapes already dressed.
 
     As high as the courses of the wall; where a course is cut to less than a half, it is one with the next. A stone
     goes on to what is beside it where too little would be left between them.
@@ -46,7 +46,7 @@ def _around(shape: np.ndarray) -> Box:
 
 
 def _beds(wall: WallElevation, opening: Opening) -> Iterator[float]:
-    """Heights of the joints of its jambs [m]."""
+    """Yield the heights of the bed joints of the jambs [m]."""
     _, low, _, high = opening.box
     yield low
     for below, level, above in zip(wall.levels[:-2], wall.levels[1:-1], wall.levels[2:], strict=True):
@@ -57,7 +57,7 @@ def _beds(wall: WallElevation, opening: Opening) -> Iterator[float]:
 
 
 def _room(wall: WallElevation, jamb: tuple[float, float, float], side: int, boxes: Sequence[Box]) -> float:
-    """How far a stone of a jamb (place along the wall, from where to where up) may go to that side [m]."""
+    """Return the room for a jamb stone (place along the wall, lower and upper level) to one side [m]."""
     (start, low, high), small = jamb, SMALL * wall.length
     ends = [side * wall.roof(high)[side > 0]]
     for x0, y0, x1, y1 in boxes:
@@ -68,7 +68,7 @@ def _room(wall: WallElevation, jamb: tuple[float, float, float], side: int, boxe
 
 
 def _length(room: float, wanted: float, full: float) -> float:
-    """How long a stone is where there is so much room [m]; 0.0: there is none."""
+    """Return the length of a stone in a given room [m]; 0.0: there is none."""
     if room < SHORTEST * full * (1.0 - SMALL):
         return 0.0
     if room - wanted >= SHORT * full:

@@ -1,4 +1,4 @@
-"""What a case file says of walls of a building in irregular stones: patterns, and the panel that they fill."""
+"""Tables of a case file for walls of a building in irregular stones: patterns, and the panel that they fill."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from dem_cli.masonry.structures.patterns.tiling import Tiling
 
 
 class BuildingPatternKeys(CaseModel):
-    """What every pattern of a building accepts."""
+    """Keys of every stone pattern of a building."""
 
     jambs: Literal["dressed", "rubble"] = Field(
         "dressed",
@@ -29,11 +29,11 @@ class VoronoiRubble(voronoi.VoronoiPattern, BuildingPatternKeys):
     kind: Literal["voronoi"] = Field("voronoi", description="cells of random points, without courses")
 
     def stones_in(self, panel: WallPanel, draws: np.random.Generator) -> Tiling:
-        """Stones of a panel. Raises KeyProblem."""
+        """Generate the stones of a panel. Raises KeyProblem."""
         return voronoi.stones_in(panel, self, draws)
 
     def mean(self, panel: WallPanel) -> float:
-        """Area of a mean stone [m2]. Raises KeyProblem: too few, too many."""
+        """Return the area of a mean stone [m2]. Raises KeyProblem: too few or too many stones."""
         return panel.area / self.count(panel.area)
 
 
@@ -43,11 +43,11 @@ class CoursedRubble(coursed.CoursedPattern, BuildingPatternKeys):
     kind: Literal["coursed"] = Field("coursed", description="irregular courses")
 
     def stones_in(self, panel: WallPanel, draws: np.random.Generator) -> Tiling:
-        """Stones of a panel. Raises KeyProblem."""
+        """Generate the stones of a panel. Raises KeyProblem."""
         return coursed.stones_in(panel, self, draws).tiling
 
     def mean(self, panel: WallPanel) -> float:
-        """Area of a mean stone [m2]."""
+        """Return the area of a mean stone [m2]."""
         return self.spacing[0] * self.head_spacing[0]
 
 

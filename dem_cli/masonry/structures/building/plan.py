@@ -1,4 +1,4 @@
-"""Plan of a building: where axes of walls meet, and in which course which wall passes there."""
+"""Plan of a building: junctions of wall axes, and which wall passes there in each course."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TWO_STEMS = ((0, 1, 0, 0), (0, 0, 0, 1))  # one from either side of a wall: each
 
 
 class PlanAxis(NamedTuple):
-    """One wall in plan; its own x goes along, y across to the left, from the start of its axis."""
+    """Wall in plan; its own x runs along the axis from its start, y across to the left."""
 
     name: str
     start: np.ndarray  # [m], (2,)
@@ -29,27 +29,27 @@ class PlanAxis(NamedTuple):
 
     @property
     def across(self) -> np.ndarray:
-        """Unit vector to the left, (2,)."""
+        """Unit vector to the left of the axis, (2,)."""
         return np.array([-self.along[1], self.along[0]])
 
     @property
     def faces(self) -> np.ndarray:
-        """Where its two faces are across [m], (2,)."""
+        """Places of the two faces across the axis [m], (2,)."""
         return np.array([-0.5, 0.5]) * self.thickness
 
     def local(self, points: np.ndarray) -> np.ndarray:
-        """Points of the plan in its own coordinates, (n, 2)."""
+        """Convert points of the plan to coordinates of the wall, (n, 2)."""
         return product(points - self.start, np.column_stack([self.along, self.across]))
 
     def corners(self) -> np.ndarray:
-        """Of its footprint, from end to end of the axis, counter-clockwise, (4, 2)."""
+        """Corners of the footprint from end to end of the axis, counter-clockwise, (4, 2)."""
         low, high = self.faces
         local = np.array([[0.0, low], [self.length, low], [self.length, high], [0.0, high]])
         return self.start + product(local, np.stack([self.along, self.across]))
 
 
 class Junction(NamedTuple):
-    """Two walls that meet."""
+    """Junction of two walls."""
 
     walls: tuple[int, int]  # in the order of the case
     at: tuple[float, float]  # where the axes cross, along either [m]
@@ -57,49 +57,51 @@ class Junction(NamedTuple):
     turns: tuple[int, ...] = (0, 1)  # which of the two passes, course by course, over and over
 
     def of(self, wall: int) -> int:
-        """0 or 1: which of the two a wall is."""
+        """Return 0 or 1: the place of a wall in the junction."""
         return self.walls.index(wall)
 
 
 class Plan(NamedTuple):
-    """All axes and where they meet."""
+    """Plan of a building: all wall axes and their junctions."""
 
     axes: tuple[PlanAxis, ...]
     junctions: tuple[Junction, ...]
 
     def face(self, wall: int, other: int, side: int) -> np.ndarray:
-        """Where a face of another wall (side: -1 right of it, 1 left) cuts both faces of this one [m], (2,)."""
+        """Intersect a face of another wall (side: -1 right, 1 left) with both faces of this one [m], (2,)."""
         here, there = self.axes[wall], self.axes[other]
         away = float(product(here.start - there.start, there.across))
         sine, cosine = float(product(here.along, there.across)), float(product(here.across, there.across))
         return (side * 0.5 * there.thickness - away - cosine * here.faces) / sine
 
     def towards(self, wall: int, other: int, arm: int) -> int:
-        """On which side of another wall (-1 right, 1 left) an arm of this one lies: arm 1 goes on along the axis."""
+        """Return the side of another wall (-1 right, 1 left) on which an arm of this one lies: arm 1 goes on along the
+        axis.
+        """
         return arm * int(math.copysign(1.0, float(product(self.axes[wall].along, self.axes[other].across))))
 
     def near(self, wall: int, other: int, arm: int) -> np.ndarray:
-        """The face of another wall that an arm of this one reaches first, as `face`."""
+        """Return the face of another wall that an arm of this one reaches first, as `face`."""
         return self.face(wall, other, self.towards(wall, other, arm))
 
     def far(self, wall: int, other: int, arm: int) -> np.ndarray:
-        """The face of another wall behind which an arm of this one would come out, as `face`."""
+        """Return the face of another wall behind which an arm of this one would come out, as `face`."""
         return self.face(wall, other, -self.towards(wall, other, arm))
 
     def zone(self, wall: int, junction: Junction) -> tuple[float, float]:
-        """From where to where along a wall the other one of a junction lies [m]."""
+        """Return both ends of the zone along a wall that the other wall of a junction occupies [m]."""
         other = junction.walls[1 - junction.of(wall)]
         places = np.concatenate([self.face(wall, other, side) for side in (-1, 1)])
         return float(places.min()), float(places.max())
 
     def met(self, wall: int) -> list[Junction]:
-        """Junctions of a wall, along its axis."""
+        """Return the junctions of a wall, along its axis."""
         mine = [junction for junction in self.junctions if wall in junction.walls]
         return sorted(mine, key=lambda junction: junction.at[junction.of(wall)])
 
 
 def plan_of(building: Building) -> Plan:
-    """The plan of a building. Raises KeyProblem where walls meet in a way that cannot be bonded."""
+    """Create the plan of a building. Raises KeyProblem where walls meet in a way that cannot be bonded."""
     axes = tuple(
         PlanAxis(wall.id, np.array(wall.axis[0]), *_direction(wall.axis), wall.thickness or building.thickness)
         for wall in building.walls
@@ -122,7 +124,7 @@ def _direction(axis: Sequence[Sequence[float]]) -> tuple[np.ndarray, float]:
 
 
 def _meeting(axes: Sequence[PlanAxis], i: int, j: int, reach: float) -> Junction | None:
-    """Where two axes cross, or one comes as near as the thickness of the other; None: they do not meet."""
+    """Find the junction of two axes, within the reach of their thicknesses; None: they do not meet."""
     a, b = axes[i], axes[j]
     sine = float(product(a.along, b.across))
     if abs(sine) < math.sin(math.radians(SHARPEST)) * (1.0 - SAME):
@@ -142,12 +144,12 @@ def _meeting(axes: Sequence[PlanAxis], i: int, j: int, reach: float) -> Junction
 
 
 def overlap(one: np.ndarray, other: np.ndarray, reach: float) -> bool:
-    """Whether two convex footprints share an area: no side of either separates them."""
+    """Test whether two convex footprints overlap: no side of either separates them."""
     return not (_apart(one, other, reach) or _apart(other, one, reach))
 
 
 def _apart(shape: np.ndarray, other: np.ndarray, reach: float) -> bool:
-    """Whether a side of a convex shape (n, 2), counter-clockwise, has all of another one beyond it."""
+    """Test whether a side of a convex shape (n, 2), counter-clockwise, separates it from another shape."""
     sides = np.roll(shape, -1, axis=0) - shape
     outwards = np.column_stack([sides[:, 1], -sides[:, 0]]) / np.hypot(*sides.T)[:, None]
     heights = product(other, outwards.T).min(axis=0) - (outwards * shape).sum(axis=1)
@@ -166,7 +168,7 @@ def _beside(one: PlanAxis, other: PlanAxis) -> str:
 
 
 def _check_others(plan: Plan, reach: float) -> None:
-    """Raises KeyProblem where walls that do not meet overlap, or go on in one line, end to end."""
+    """Raise KeyProblem where walls without a junction overlap, or continue each other end to end."""
     hosts = [_hosts(plan, wall) for wall in range(len(plan.axes))]
     met = {junction.walls for junction in plan.junctions}
     for i, j in combinations(range(len(plan.axes)), 2):
@@ -183,7 +185,7 @@ def _check_others(plan: Plan, reach: float) -> None:
 
 
 def _hosts(plan: Plan, wall: int) -> set[int]:
-    """Walls into which one ends, between their ends."""
+    """Return the walls into which one ends, between their ends."""
     return {
         junction.walls[1 - junction.of(wall)]
         for junction in plan.met(wall)
@@ -192,7 +194,7 @@ def _hosts(plan: Plan, wall: int) -> set[int]:
 
 
 def _with_turns(plan: Plan, least: float) -> Plan:
-    """Two walls that end at the same place from either side of a third one pass in turn; others keep their distance."""
+    """Alternate two walls that end at the same place from either side of a third; others keep their distance."""
     changed: dict[Junction, tuple[int, ...]] = {}
     dropped: set[Junction] = set()
     for wall in range(len(plan.axes)):
@@ -214,7 +216,7 @@ def _with_turns(plan: Plan, least: float) -> Plan:
 
 
 def _is_host(plan: Plan, stems: Sequence[int], wall: int) -> bool:
-    """Whether of three walls at one place another one is that into which both others end from either side."""
+    """Test whether one of three walls at one place is that in which both others end, from either side."""
     for host in stems:
         others = [each for each in plan.met(host) if each.walls[1 - each.of(host)] in {wall, *stems} - {host}]
         if len(others) == 2 and _from_both_sides(plan, host, (others[0], others[1])):
@@ -223,7 +225,7 @@ def _is_host(plan: Plan, stems: Sequence[int], wall: int) -> bool:
 
 
 def _from_both_sides(plan: Plan, wall: int, junctions: tuple[Junction, Junction]) -> bool:
-    """Whether two walls end at this one, between its ends, one on either side."""
+    """Test whether two walls end at this one, between its ends, one on either side."""
     sides = []
     for junction in junctions:
         mine, other = junction.of(wall), junction.walls[1 - junction.of(wall)]

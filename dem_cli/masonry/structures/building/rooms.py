@@ -1,4 +1,4 @@
-"""Rooms of a plan: the closed polygons between axes of walls that meet, counter-clockwise."""
+"""Find the rooms of a plan: closed polygons between wall axes, counter-clockwise."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from dem_cli.masonry.structures.building.plan import Plan
 
 
 class RoomSide(NamedTuple):
-    """One side of a room or of what spans between two walls; the room lies to the left of it."""
+    """Side of a room, or of the space between two walls; the room lies to the left of it."""
 
     wall: int | None  # None: no wall there
     start: np.ndarray  # a point of the axis [m], (2,)
@@ -30,7 +30,7 @@ Room = tuple[RoomSide, ...]
 
 
 class Step(NamedTuple):
-    """A piece of an axis between two junctions, walked one way."""
+    """Piece of an axis between two junctions, walked one way."""
 
     wall: int
     begin: int  # junction
@@ -39,7 +39,7 @@ class Step(NamedTuple):
 
 
 def rooms_of(plan: Plan) -> list[Room]:
-    """All rooms, each by its sides in order."""
+    """Find all rooms, each by its sides in order."""
     steps = _steps(plan)
     angles = {step: _angle(plan, step) for step in steps}
     leaving: dict[int, list[Step]] = {}
@@ -64,7 +64,7 @@ def rooms_of(plan: Plan) -> list[Room]:
 
 
 def between(plan: Plan, one: int, other: int) -> Room:
-    """What lies between two walls that do not meet: from end to end of both."""
+    """Return the space between two walls that do not meet, from end to end of both."""
     a, b = plan.axes[one], plan.axes[other]
     ends = [np.stack([axis.start, axis.start + axis.length * axis.along]) for axis in (a, b)]
     first = ends[0] if a.local(ends[1].mean(axis=0)[None])[0, 1] > 0.0 else ends[0][::-1]
@@ -76,7 +76,7 @@ def between(plan: Plan, one: int, other: int) -> Room:
 
 
 def _steps(plan: Plan) -> list[Step]:
-    """Pieces of axes both ways, without those that lead nowhere."""
+    """List the pieces of axes in both directions, without dead ends."""
     numbers = {id(junction): n for n, junction in enumerate(plan.junctions)}
     pieces = [
         Step(wall, numbers[id(one)], numbers[id(two)], 1)
@@ -103,7 +103,7 @@ def _place(plan: Plan, wall: int, junction: int) -> np.ndarray:
 
 
 def _sides(plan: Plan, walk: Sequence[Step]) -> Room:
-    """Steps along the same wall, one after the other, are one side."""
+    """Merge consecutive steps along the same wall to one side."""
     first = next(k for k in range(len(walk)) if walk[k - 1].wall != walk[k].wall)
     turned = [*walk[first:], *walk[:first]]
     kept = [step for before, step in pairwise([walk[first - 1], *turned]) if before.wall != step.wall]

@@ -1,4 +1,4 @@
-"""Runs of a course: from where to where a wall goes without interruption, given which wall passes at each junction."""
+"""Runs of a course: uninterrupted stretches of a wall, given which wall passes at each junction."""
 
 from __future__ import annotations
 
@@ -13,14 +13,16 @@ Passes = Callable[[Junction, int], int]  # (junction, course from 0) -> 0 or 1: 
 
 
 class Run(NamedTuple):
-    """A stretch of one course; each end is where it cuts the right and the left face of the wall [m], (2,)."""
+    """Uninterrupted stretch of one course; each end is where it cuts the right and the left face of the wall [m],
+    (2,).
+    """
 
     start: np.ndarray
     stop: np.ndarray
 
 
 def runs_of(plan: Plan, wall: int, course: int, present: Callable[[int, int], bool], passes: Passes) -> list[Run]:
-    """Stretches of a course of a wall, along its axis.
+    """Find the runs of a course of a wall, along its axis.
 
     A wall that passes a corner goes on to the outer face of the other one; one that does not ends at its nearest face.
     Where it passes in the middle of the other one, that ends at both of its faces. present: (wall, course) -> whether
@@ -43,5 +45,5 @@ def runs_of(plan: Plan, wall: int, course: int, present: Callable[[int, int], bo
 
 
 def turn_by_turn(junction: Junction, course: int) -> int:
-    """Which of two walls passes: as the junction says, over and over."""
+    """Return which of two walls passes in a course, by the repeating order of the junction."""
     return junction.turns[course % len(junction.turns)]

@@ -1,4 +1,4 @@
-"""What a case file says of a building: axes in plan, openings, gables, floors, the ground below."""
+"""Table of a building in a case file: axes in plan, openings, gables, floors, the ground below."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ class Floor(CaseModel):
 
     @property
     def bears_on(self) -> tuple[str, ...]:
-        """The walls that carry it."""
+        """Walls that carry the floor."""
         return self.on[:2] if self.kind == "beams" else self.on
 
     @model_validator(mode="after")
@@ -159,7 +159,7 @@ class Building(BondKeys, RandomStructure):
         return self.base_height or self.block[1]
 
     def number(self, wall: str) -> int:
-        """Which wall has that name."""
+        """Return the number of the wall with a name."""
         return [each.id for each in self.walls].index(wall)
 
     @model_validator(mode="after")
@@ -193,7 +193,7 @@ class Building(BondKeys, RandomStructure):
 
 
 def _check_pattern(building: Building) -> None:
-    """Raises KeyProblem where keys of regular courses cannot hold for stones of a pattern."""
+    """Raise KeyProblem where keys of regular courses contradict a pattern of irregular stones."""
     if building.pattern is None and all(wall.pattern is None for wall in building.walls):
         return
     if building.leaves > 1:
@@ -204,7 +204,7 @@ def _check_pattern(building: Building) -> None:
 
 
 def _check_floor(building: Building, floor: Floor, i: int) -> None:
-    """Raises KeyProblem where a floor names no wall, or lies on no bed joint."""
+    """Raise KeyProblem where a floor names an unknown wall, or lies on no bed joint."""
     known = [wall.id for wall in building.walls]
     for k, name in enumerate(floor.on):
         if name not in known:

@@ -1,1 +1,1 @@
-"""Columns: of blocks, of round drums, and rows of these with what they carry."""
+"""Generate columns: of blocks, of round drums, and rows of these with what they carry."""

@@ -1,4 +1,4 @@
-"""Columns and piers: one block per course, straight or tapered, with or without a cap."""
+"""Generate columns and piers: one block per course, straight or tapered, with or without a cap."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from dem_cli.masonry.structures.bases import base_block
 
 
 class Drum(CaseModel):
-    """One block of a column, symmetric about the axis."""
+    """Drum of a column: one block, symmetric about the axis."""
 
     width: Positive = Field(description="width at its foot [m]", examples=[0.5])
     height: Positive = Field(description="height [m]", examples=[0.6])
@@ -24,7 +24,7 @@ class Drum(CaseModel):
 
 
 class Cap(CaseModel):
-    """A rectangular block on top: a capital, or a weight."""
+    """Cap of a column: a rectangular block on top, as a capital or a weight."""
 
     width: Positive = Field(description="width [m]", examples=[0.7])
     height: Positive = Field(description="height [m]", examples=[0.2])
@@ -32,8 +32,8 @@ class Cap(CaseModel):
 
 
 class Column(StructureBase):
-    """Blocks on top of each other. Local origin: on the axis of the column, at its foot, on top of the base; in 3D half
-    of the thickness lies to either side of it.
+    """Column of blocks on top of each other. Local origin: on the axis of the column, at its foot, on top of the base;
+    in 3D half of the thickness lies to either side of it.
 
     Block names: "<id>-<number>" from below, from 1; "<id>-base"; "<id>-cap".
     Shape: `block` and `courses` (tapered with `top_width`), or `drums` one by one.
@@ -83,7 +83,7 @@ class Column(StructureBase):
 
     @property
     def profile(self) -> list[Drum]:
-        """The drums from below, whichever way they were given."""
+        """Drums of the column from below, whichever way they were given."""
         if self.block is None or self.courses is None:
             return list(self.drums)
         width, height = self.block
@@ -93,7 +93,7 @@ class Column(StructureBase):
 
 
 def build(column: Column) -> list[Block]:
-    """Blocks in local coordinates from below, the base first, the cap last."""
+    """Generate the blocks of a column from below, the base first, the cap last."""
     drums = column.profile
     levels = _levels(column, drums)
     blocks = []
@@ -115,7 +115,7 @@ def build(column: Column) -> list[Block]:
 
 
 def _levels(column: Column, drums: list[Drum]) -> np.ndarray:
-    """Heights of the joints [m], (n + 1,)."""
+    """Return the heights of the joints [m], (n + 1,)."""
     if column.block is None or column.courses is None:
         return np.concatenate([[0.0], np.cumsum([drum.height for drum in drums])])
     return np.arange(column.courses + 1) * column.block[1]

@@ -1,4 +1,4 @@
-"""Columns of round drums in 3D: straight, tapered or with entasis, on a plinth, with a capital."""
+"""Generate columns of round drums in 3D: straight, tapered or with entasis, on a plinth, with a capital."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from dem_cli.core.model.blocks import Block
 
 
 class Capital(CaseModel):
-    """A capital of one stone: an echinus that widens from the shaft, and a square abacus on it."""
+    """Capital of one stone: an echinus that widens from the shaft, and a square abacus on it."""
 
     width: Positive = Field(description="of the abacus [m]", examples=[1.1])
     height: Positive = Field(description="of the abacus [m]", examples=[0.2])
@@ -23,7 +23,7 @@ class Capital(CaseModel):
 
 
 class Plinth(CaseModel):
-    """A square block below the shaft."""
+    """Plinth: a square block below the shaft."""
 
     width: Positive = Field(description="width [m]", examples=[1.2])
     height: Positive = Field(description="height [m]", examples=[0.25])
@@ -31,7 +31,7 @@ class Plinth(CaseModel):
 
 
 class Shaft(CaseModel):
-    """A round column: what a structure of kind "drums" and each column of a temple front are given by."""
+    """Shaft of a round column, shared by kind "drums" and the columns of a temple front."""
 
     radius: Positive | None = Field(None, description="at the foot of the shaft, to the corners [m]", examples=[0.45])
     top_radius: Positive | None = Field(None, description="at its top [m]; default: as at the foot", examples=[0.36])
@@ -100,18 +100,18 @@ class Shaft(CaseModel):
 
     @property
     def foot(self) -> float:
-        """Half the width of what stands on the ground [m]."""
+        """Half the width of the plinth or of the lowest drum [m]."""
         return self.plinth.width / 2.0 if self.plinth else float(self.profile[0])
 
     @property
     def whole_height(self) -> float:
-        """From the ground to the top of the capital [m]."""
+        """Height from the ground to the top of the capital [m]."""
         capital = self.capital.height + self.capital.echinus if self.capital else 0.0
         return float(self.joints[-1]) + (self.plinth.height if self.plinth else 0.0) + capital
 
 
 def _either(shaft: Shaft, one: tuple[str, ...], other: tuple[str, ...], others: tuple[str, ...] = ()) -> None:
-    """Raises KeyProblem unless all of the keys of one of two ways are given, and none of the other."""
+    """Raise KeyProblem unless all keys of one of two alternatives are given, and none of the other."""
     given = [key for key in (*other, *others) if key in shaft.model_fields_set and getattr(shaft, key) is not None]
     if getattr(shaft, one[0]) and given:
         raise KeyProblem(f"not allowed beside {one[0]}; give {one[0]}, or {' and '.join(other)}", given[0])
@@ -121,7 +121,7 @@ def _either(shaft: Shaft, one: tuple[str, ...], other: tuple[str, ...], others: 
 
 
 class DrumColumn(Shaft, StructureBase):
-    """Round drums on top of each other in 3D. Local origin: on the axis, at the foot, on top of the base.
+    """Column of round drums in 3D. Local origin: on the axis, at the foot, on top of the base.
 
     Block names: "<id>-<number>" from below, from 1; "<id>-plinth"; "<id>-capital"; "<id>-base".
     """
@@ -137,7 +137,7 @@ class DrumColumn(Shaft, StructureBase):
 
 
 def build(column: DrumColumn) -> list[Block]:
-    """Blocks in local places from below: base, plinth, drums, capital."""
+    """Generate the blocks of a drum column from below: base, plinth, drums, capital."""
     blocks = stones_of(column, 0.0)
     if not column.base:
         return blocks
@@ -147,7 +147,7 @@ def build(column: DrumColumn) -> list[Block]:
 
 
 def stones_of(shaft: Shaft, x: float, prefix: str = "") -> list[Block]:
-    """Blocks of a column whose axis is at x [m], from below."""
+    """Generate the blocks of a column whose axis is at x [m], from below, without base."""
     blocks = []
     lift, radii, joints = 0.0, shaft.profile, shaft.joints
     if shaft.plinth:

@@ -1,4 +1,4 @@
-"""Colonnades and temple fronts in 3D: drum columns, architrave, frieze, cornice and a pediment."""
+"""Generate colonnades and temple fronts in 3D: drum columns, architrave, frieze, cornice and a pediment."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from dem_cli.masonry.structures.columns.drums import Shaft, stones_of
 
 
 class Beam(CaseModel):
-    """A course of beams from end to end of a colonnade."""
+    """Architrave, frieze or cornice: a course of beams from end to end of a colonnade."""
 
     height: Positive = Field(description="height [m]", examples=[0.6])
     thickness: Positive | None = Field(
@@ -29,7 +29,7 @@ class Beam(CaseModel):
 
 
 class Pediment(CaseModel):
-    """A triangle on top, as long as the course below it."""
+    """Pediment: a triangle on top, as long as the course below it."""
 
     rise: Positive = Field(description="height of its top over its foot [m]", examples=[1.4])
     thickness: Positive | None = Field(
@@ -95,7 +95,7 @@ class TempleFront(StructureBase):
 
 
 def build(front: TempleFront) -> list[Block]:
-    """Blocks in local places: base, column by column from below, the courses above them, the pediment."""
+    """Generate the blocks of a temple front: base, column by column from below, the courses above, the pediment."""
     axes, shaft = front.axes, front.column
     blocks = []
     if front.base:
@@ -126,7 +126,7 @@ def build(front: TempleFront) -> list[Block]:
 
 
 def _triangle(heads: Sequence[float], level: float, rise: float) -> list[np.ndarray]:
-    """A triangle on a level, cut by upright joints, (n, 2) each; places of both ends and of the joints [m]."""
+    """Divide a triangle by upright joints, (n, 2) each; `heads`: places of both ends and of the joints [m]."""
     end, shapes = heads[-1], []
     tops = [level + rise * (1.0 - abs(x) / end) for x in heads]
     tops[0] = tops[-1] = level

@@ -1,1 +1,1 @@
-"""Patterns of irregular masonry: rectangles and convex outlines, with holes, filled with stones."""
+"""Patterns of irregular masonry: convex panels with holes, filled with stones."""

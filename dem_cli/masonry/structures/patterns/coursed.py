@@ -50,11 +50,11 @@ class CoursedPattern(CaseModel):
 
     @property
     def steepest(self) -> float:
-        """The largest angle of a head joint from the vertical [rad]."""
+        """Largest angle of a head joint from the vertical [rad]."""
         return math.radians(abs(self.head_angle_deg[0]) + self.head_angle_deg[1])
 
     def check(self, length: float, height: float) -> None:
-        """Raises KeyProblem where beds or heads could cross in a panel of that size [m], or stones are too many."""
+        """Raise KeyProblem where beds or heads could cross in a panel of that size [m], or stones are too many."""
         count = length * height / (self.spacing[0] * self.head_spacing[0])
         if count > MOST_STONES:
             raise KeyProblem(f"makes {count:.3g} stones; at most {MOST_STONES:,}", "head_spacing")
@@ -78,26 +78,26 @@ class CoursedPattern(CaseModel):
 
 
 class CoursedStones(NamedTuple):
-    """Stones of a panel in irregular courses, and what was drawn for them."""
+    """Stones of a panel in irregular courses, and the random values drawn for them."""
 
     tiling: Tiling
     drawn: dict[str, np.ndarray]  # key -> values [m, deg]
 
 
 def pieces(total: float, mean: float) -> int:
-    """About how many pieces of a mean length fill a total [m]."""
+    """Return the nearest number of pieces of a mean length that fill a total [m]."""
     return max(round(total / mean), 1)
 
 
 def least_part(total: float, size: Size) -> float:
-    """The shortest that a piece of a divided length can become [m]: one as short, the others as long as can be."""
+    """Return the shortest possible piece of a divided length [m]: one shortest, the others longest."""
     mean, deviation = size
     n = pieces(total, mean)
     return (mean - deviation) * min(total / (mean - deviation + (n - 1) * (mean + deviation)), 1.0)
 
 
 def divided(total: float, size: Size, draws: np.random.Generator) -> np.ndarray:
-    """Places from 0 to a total length of as many pieces as fill it best, drawn, then stretched alike [m], (n + 1,)."""
+    """Divide a length into random pieces that are scaled to fit [m]; returns places from 0, (n + 1,)."""
     n = pieces(total, size[0])
     lengths = draws.uniform(size[0] - size[1], size[0] + size[1], n)
     places = np.concatenate([[0.0], np.cumsum(lengths)]) * (total / lengths.sum())
@@ -106,7 +106,7 @@ def divided(total: float, size: Size, draws: np.random.Generator) -> np.ndarray:
 
 
 def stones_in(panel: WallPanel, pattern: CoursedPattern, draws: np.random.Generator) -> CoursedStones:
-    """Stones in irregular courses that fill a panel; those with a kink are compounds of convex parts.
+    """Generate stones in irregular courses that fill a panel; those with a kink are compounds of convex parts.
 
     Raises KeyProblem: beds or heads could cross.
     """
@@ -148,7 +148,7 @@ class _Courses:
         self.drawn["head_angle_deg"] = np.degrees(functions.arctan(np.concatenate(slopes)))
 
     def _bed(self, k: int) -> list[tuple[float, float]]:
-        """Kinks of an inner bed joint from left to right."""
+        """Draw the kinks of an inner bed joint from left to right."""
         mean, deviation = self.pattern.deviation
         xs = divided(self.length, self.pattern.segment, self.draws)
         ys = self.levels[k] + mean + self.draws.uniform(-deviation, deviation, len(xs))
@@ -157,7 +157,7 @@ class _Courses:
         return list(zip(xs.tolist(), ys.tolist(), strict=True))
 
     def _lay(self, k: int) -> tuple[np.ndarray, np.ndarray]:
-        """Head joints of course k (from 0): places of its ends and heads at mid-height, and their slopes dx/dy."""
+        """Draw the head joints of course k (from 0): places of ends and heads at mid-height, and their slopes dx/dy."""
         middle = 0.5 * float(self.levels[k] + self.levels[k + 1])
         places = divided(self.length, self.pattern.head_spacing, self.draws)
         mean, deviation = self.pattern.head_angle_deg
@@ -182,12 +182,12 @@ class _Courses:
         return places, slopes
 
     def _add(self, k: int, x: float, y: float) -> None:
-        """A corner on bed k."""
+        """Add a corner on bed k."""
         if x not in dict(self.beds[k]):
             self.beds[k] = sorted([*self.beds[k], (x, y)])
 
     def _draw_kinks(self, k: int, places: list[float], slopes: list[float], middle: float) -> None:
-        """Kinks of bed k that lie near head joints from below are moved onto them, at their own level."""
+        """Move the kinks of bed k that lie near head joints from below onto them, at their own level."""
         if k == len(self.beds) - 1:
             return
         kinks = [self.beds[k][0]]
@@ -202,7 +202,7 @@ class _Courses:
     def _meeting(
         self, bed: list[tuple[float, float]], place: float, slope: float, middle: float
     ) -> tuple[float, float]:
-        """Where a head joint meets a bed; at a corner of the bed exactly there."""
+        """Intersect a head joint with a bed; exact at a corner of the bed."""
         aside = [x - place - slope * (y - middle) for x, y in bed]
         small = 1e-9 * self.length
         for i, (x, y) in enumerate(bed):
@@ -214,7 +214,7 @@ class _Courses:
         return x0 + share * (x1 - x0), y0 + share * (y1 - y0)
 
     def tiling(self) -> Tiling:
-        """The stones; corners of both courses at a bed are corners of all stones there."""
+        """Return the stones; corners of both courses at a bed are corners of all stones there."""
         numbers: list[dict[float, int]] = []
         corners: list[tuple[float, float]] = []
         for bed in self.beds:

@@ -1,4 +1,4 @@
-"""Irregular coursed masonry: kinked bed joints, stones of random sizes, inclined head joints (Lemos 2019, 3.3)."""
+"""Generate irregular coursed masonry: kinked bed joints, random stones, inclined head joints (Lemos 2019, 3.3)."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ UNITS = {"head_angle_deg": "deg"}
 
 
 class CoursedWall(RandomStructure, PatternWall, coursed.CoursedPattern):
-    """Stones in irregular courses: beds kink, stones differ in height and length. Local origin: lower left corner of
-    the wall, on top of its base; in 3D half of the thickness lies to either side.
+    """Wall of stones in irregular courses: beds kink, stones differ in height and length. Local origin: lower left
+    corner of the wall, on top of its base; in 3D half of the thickness lies to either side.
 
     Block names: "<id>-<course>-<number>", both from 1, numbers from left to right; "<id>-base";
     "<id>-lintel-<opening>", "<id>-arch-<opening>-<number>"; "<id>-side-<number>", "<id>-side-<number>-left" and so on.
@@ -34,18 +34,18 @@ class CoursedWall(RandomStructure, PatternWall, coursed.CoursedPattern):
 
 
 def build(wall: CoursedWall) -> list[Block]:
-    """Blocks in local places: the base first, lintels last."""
+    """Generate the blocks of a coursed wall: the base first, lintels last."""
     return masonry(wall, stones(wall).tiling)
 
 
 @drawn_once
 def stones(wall: CoursedWall) -> coursed.CoursedStones:
-    """The stones of a wall, and what was drawn for them."""
+    """Draw the stones of a coursed wall, with the random values."""
     return coursed.stones_in(wall.panel, wall, np.random.default_rng(wall.seed))
 
 
 def figures(wall: CoursedWall) -> list[tuple[str, str]]:
-    """What was drawn, for `dem check`: mean and standard deviation of each parameter."""
+    """Describe the drawn parameters by mean and standard deviation, for `dem check`."""
     found = stones(wall)
     drawn = [
         (key, f"{spread(values)} {UNITS.get(key, 'm')}, {len(values):,} drawn")

@@ -1,4 +1,4 @@
-"""Stones cut by the sides of a convex polygon: around openings and quoins, along the slopes of a gable."""
+"""Cut stones by the sides of a convex polygon: around openings and quoins, along the slopes of a gable."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from dem_cli.masonry.structures.patterns.tiling import SAME, Loop, Tiling, aroun
 
 
 def without_holes(tiling: Tiling, holes: Sequence[np.ndarray], narrowest: float = 0.0) -> Tiling:
-    """What convex holes (n, 2) leave of the stones; one around a single corner of a hole stays whole.
+    """Cut convex holes (n, 2) out of the stones; one around a single corner of a hole stays whole.
 
     Pieces narrower than that [m] are stones of their own: lips along a hole, for `merged` to give to a neighbour.
     """
@@ -24,7 +24,7 @@ def without_holes(tiling: Tiling, holes: Sequence[np.ndarray], narrowest: float 
 
 
 def within(tiling: Tiling, outline: np.ndarray) -> Tiling:
-    """What of the stones lies in a convex outline (n, 2)."""
+    """Cut the stones to a convex outline (n, 2)."""
     return _Cut(tiling, outline).inside()
 
 
@@ -43,7 +43,7 @@ class _Cut:
         self.left = _left_of(self.ends - shape, arms, self.gap)  # of each corner from each side [m], (n, n_sides)
 
     def outside(self, narrowest: float) -> Tiling:
-        """The stones without what lies in the polygon."""
+        """Return the parts of the stones outside the polygon."""
         loops = self.tiling.stones
         counts = [len(loop) for loop in loops]
         if not loops:
@@ -58,7 +58,7 @@ class _Cut:
         )
 
     def inside(self) -> Tiling:
-        """What of the stones lies in the polygon."""
+        """Return the parts of the stones inside the polygon."""
         found: list[list[Loop]] = []
         for k in range(len(self.tiling.stones)):
             pieces = []
@@ -79,7 +79,7 @@ class _Cut:
         return Tiling(np.array(self.corners), [tuple(i for i in loop if i not in idle) for loop in loops], courses)
 
     def _idle(self, loops: Sequence[Loop]) -> set[int]:
-        """New corners on straight edges at which no third edge ends."""
+        """Find new corners on straight edges at which no third edge ends."""
         neighbours: dict[int, set[int]] = {i: set() for i in range(len(self.left), len(self.corners))}
         for loop in loops:
             for i, j in around(loop):
@@ -113,19 +113,19 @@ class _Cut:
         return lips + (pieces if inside > 1 else united(pieces))
 
     def _upright_first(self) -> list[int]:
-        """The sides, the steepest first: what is left beside a hole has its full height."""
+        """Sort the sides by steepness, so that a piece beside a hole has its full height."""
         along = np.abs(self.ends - self.shape)
         slopes: list[int] = np.argsort(along[:, 0] / np.hypot(*along.T), kind="stable").tolist()
         return slopes
 
     def _sharp_corners(self) -> np.ndarray:
-        """Corners of the polygon where it turns by more than 60°."""
+        """Return the corners of the polygon where it turns by more than 60°."""
         along = self.ends - self.shape
         along = along / np.hypot(*along.T)[:, None]
         return self.shape[(along * np.roll(along, 1, axis=0)).sum(axis=1) < 0.5]
 
     def _half(self, loop: Loop, side: int, sign: float) -> Loop:
-        """The piece of a convex loop to the left (1) or the right (-1) of a side of the polygon; (): none."""
+        """Return the piece of a convex loop to the left (1) or the right (-1) of a side of the polygon; (): none."""
         away = [sign * self._away(i, side) for i in loop]
         if not loop or max(away) <= 0.0:
             return ()
@@ -138,7 +138,7 @@ class _Cut:
         return tuple(kept)
 
     def _away(self, i: int, side: int) -> float:
-        """How far a corner lies to the left of a side [m]; 0 on its line."""
+        """Return the signed distance of a corner to the left of a side [m]; 0 on its line."""
         if i < len(self.left):
             return float(self.left[i, side])
         start, along = self.shape[side], self.ends[side] - self.shape[side]
@@ -161,7 +161,7 @@ class _Cut:
         return self.new[key]
 
     def _with_new_corners(self, loop: Loop) -> Loop:
-        """The loop with all corners that were made on its edges."""
+        """Insert all corners that were made on the edges of a loop."""
         if self.split.isdisjoint(loop):
             return loop
         found: list[int] = []
@@ -171,7 +171,7 @@ class _Cut:
         return tuple(found)
 
     def _all_between(self, i: int, j: int) -> list[int]:
-        """Corners made on an edge and on its pieces, from i to j."""
+        """Return the corners made on an edge and on its pieces, from i to j."""
         if not self.on_edge.get((i, j)):
             return []
         start, along = self.corners[i], self.corners[j] - self.corners[i]
@@ -184,7 +184,7 @@ class _Cut:
 
 
 def _without_ways_back(loop: Loop) -> Loop:
-    """A loop that nowhere goes to a corner and straight back; (): nothing else is left of a piece without area."""
+    """Remove spikes that go to a corner and straight back; (): nothing else is left of the loop."""
     found = list(loop)
     while len(set(found)) < len(found):
         back = [k for k in range(len(found)) if found[k - 1] == found[(k + 1) % len(found)]]
@@ -195,14 +195,14 @@ def _without_ways_back(loop: Loop) -> Loop:
 
 
 def _left_of(along: np.ndarray, arms: np.ndarray, gap: float) -> np.ndarray:
-    """How far points lie to the left of lines [m]: directions (m, 2), arms from a point of each line (n, m, 2)."""
+    """Return signed distances of points to the left of lines [m]: directions (m, 2), arms from the lines (n, m, 2)."""
     away = (along[:, 0] * arms[:, :, 1] - along[:, 1] * arms[:, :, 0]) / np.hypot(*along.T)
     found: np.ndarray = np.where(np.abs(away) <= gap, 0.0, away)
     return found
 
 
 def _strictly_inside(outline: np.ndarray, point: np.ndarray, gap: float) -> bool:
-    """Whether a point lies within a simple polygon, further than `gap` from its sides."""
+    """Test whether a point lies within a simple polygon, further than `gap` from its sides."""
     edges = np.roll(outline, -1, axis=0) - outline
     arms = point - outline
     share = np.clip((arms * edges).sum(axis=1) / (edges**2).sum(axis=1), 0.0, 1.0)

@@ -1,4 +1,4 @@
-"""Structures drawn once: commands ask for the same stones several times; kept until a table or its file changes."""
+"""Cache drawn structures until their table or file changes, since commands draw the same stones several times."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Drawn = TypeVar("Drawn")
 
 
 def drawn_once(draw: Callable[[Table], Drawn]) -> Callable[[Table], Drawn]:
-    """The same function of a structure, which draws equal ones once; what it returns belongs to all who ask."""
+    """Wrap a function of a structure so that it draws equal ones once; the result is shared."""
     kept: dict[tuple[str, ...], Drawn] = {}
 
     @wraps(draw)

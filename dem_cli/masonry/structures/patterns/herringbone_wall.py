@@ -1,4 +1,4 @@
-"""Herringbone masonry (opus spicatum) and reticulate work (opus reticulatum): equal stones laid aslant."""
+"""Generate herringbone masonry (opus spicatum) and reticulate work (opus reticulatum): equal inclined stones."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SHORTEST = 0.02  # of the mean side: shorter edges at openings collapse
 
 
 class HerringboneWall(PatternWall):
-    """Equal stones laid aslant. Local origin: lower left corner of the wall, on top of its base; in 3D half of the
+    """Wall of equal inclined stones. Local origin: lower left corner of the wall, on top of its base; in 3D half of the
     thickness lies to either side. Stones at its edges are cut; what is below a quarter of a stone is one with another.
 
     Block names: "<id>-<number>" from 1, from the lowest stone up, in rows "<id>-<row>-<number>"; "<id>-base";
@@ -56,7 +56,7 @@ class HerringboneWall(PatternWall):
 
 
 def build(wall: HerringboneWall) -> list[Block]:
-    """Blocks in local places: the base first, lintels last."""
+    """Generate the blocks of a herringbone wall: the base first, lintels last."""
     panel = wall.panel
     length, height = np.ptp(panel.outline, axis=0).tolist()
     tiling = {"interlocked": _interlocked, "rows": _rows}[wall.bond](wall, length, height)
@@ -64,7 +64,7 @@ def build(wall: HerringboneWall) -> list[Block]:
 
 
 def _interlocked(wall: HerringboneWall, length: float, height: float) -> Tiling:
-    """Stones of a whole number n of unit squares, along one axis of the grid and the other in turn."""
+    """Lay stones of n unit squares, n whole, alternately along both axes of the grid."""
     n, side = round(wall.block[0] / wall.block[1]), wall.block[1]
     reach = math.ceil((length + height) / side) + 2 * n
     angle = math.radians(wall.angle_deg)
@@ -90,7 +90,7 @@ def _interlocked(wall: HerringboneWall, length: float, height: float) -> Tiling:
 
 
 def _rows(wall: HerringboneWall, length: float, height: float) -> Tiling:
-    """Rows of parallelograms as high as a stone is long times the sine of its angle, leaning right and left in turn."""
+    """Lay rows of parallelograms that lean right and left in turn, as high as a stone times the sine of its angle."""
     angle = math.radians(wall.angle_deg)
     rise, run = wall.block[0] * math.sin(angle), wall.block[0] * math.cos(angle)
     width = wall.block[1] / math.sin(angle)
@@ -106,5 +106,5 @@ def _rows(wall: HerringboneWall, length: float, height: float) -> Tiling:
 
 
 def loose_ends(wall: HerringboneWall) -> str:
-    """The key by which stones may slide out at free ends; "": none."""
+    """Return the key by which stones may slide out at free ends; "": none."""
     return "angle_deg" if wall.has_free_ends else ""

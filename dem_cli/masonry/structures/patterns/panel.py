@@ -1,4 +1,4 @@
-"""Panels: the region of a wall that a pattern of stones fills, with its holes, and the stones as blocks."""
+"""Panels: regions of a wall that a pattern of stones fills, with holes, and the stones as blocks."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NARROWEST = 0.25  # of the mean side: narrower lips along a hole as well
 
 
 class WallPanel(NamedTuple):
-    """What is to be filled with stones.
+    """Panel of a wall to be filled with stones.
 
     outline  convex, counter-clockwise, its lowest side level [m], (n, 2)
     holes    convex, counter-clockwise: what is left out, openings, lintels, stones that others lay [m], each (n, 2)
@@ -31,12 +31,12 @@ class WallPanel(NamedTuple):
 
     @property
     def area(self) -> float:
-        """Area with the holes [m2]."""
+        """Area including the holes [m2]."""
         return polygon.area(self.outline)
 
 
 def rectangular(length: float, height: float, boxes: Sequence[Sequence[float]] = ()) -> WallPanel:
-    """The panel of a wall from its lower left corner, with rectangular holes [left, bottom, right, top] [m]."""
+    """Create the panel of a wall from its lower left corner, with rectangular holes [left, bottom, right, top] [m]."""
     return WallPanel(polygon.rectangle(0.0, 0.0, length, height), tuple(_rectangle(box) for box in boxes))
 
 
@@ -46,7 +46,7 @@ def _rectangle(box: Sequence[float]) -> np.ndarray:
 
 
 def fitted(tiling: Tiling, panel: WallPanel, mean: float, shortest: float) -> Tiling:
-    """Stones cut around the holes of a panel; what is below a quarter of a mean stone [m2] becomes part of another.
+    """Cut stones around the holes of a panel; pieces below a quarter of a mean stone [m2] join a neighbour.
 
     shortest: edges along the holes below this share of the mean side collapse.
     """
@@ -62,7 +62,7 @@ def fitted(tiling: Tiling, panel: WallPanel, mean: float, shortest: float) -> Ti
 
 
 def blocks_of(tiling: Tiling, thickness: float = 1.0, prefix: str = "") -> list[Block]:
-    """The stones of a panel with local names, from the lowest up and from left to right.
+    """Create the blocks of a panel with local names, from the lowest up and from left to right.
 
     "<course>-<number>" where there are courses, else "<number>"; a prefix goes before.
     """
@@ -82,7 +82,7 @@ def blocks_of(tiling: Tiling, thickness: float = 1.0, prefix: str = "") -> list[
 
 
 def _middle(parts: Sequence[np.ndarray]) -> np.ndarray:
-    """Centroid of the area of some parts [m], (2,)."""
+    """Return the common centroid of some parts [m], (2,)."""
     all_of_it = [polygon.properties(part) for part in parts]
     areas = np.array([float(each.area) for each in all_of_it])
     middle: np.ndarray = product(areas, np.array([each.centroid for each in all_of_it])) / areas.sum()

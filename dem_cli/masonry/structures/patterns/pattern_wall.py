@@ -1,4 +1,4 @@
-"""Walls of irregular masonry: what all kinds have in common, size, openings with lintels, base and sides."""
+"""Base class of walls of irregular masonry: size, openings with lintels, base and sides."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class DressedEnds(CaseModel):
     material: str = Field("", description="a name in [materials]; default: that of the wall", examples=["ashlar"])
 
     def boxes(self, length: float, height: float) -> dict[str, np.ndarray]:
-        """Local name -> shape of each, in a wall of that size [m]."""
+        """Return local name -> shape of each quoin in a wall of that size [m]."""
         count = max(round(height / self.height), 1)
         levels, found = [height * k / count for k in range(count)] + [height], {}
         for k, (low, high) in enumerate(zip(levels[:-1], levels[1:], strict=True)):
@@ -38,7 +38,7 @@ class DressedEnds(CaseModel):
 
 
 class PatternWall(Outlined):
-    """What every wall of irregular masonry accepts."""
+    """Keys of every wall of irregular masonry."""
 
     size: tuple[Positive, Positive] | None = Field(
         None,
@@ -100,7 +100,7 @@ class PatternWall(Outlined):
 
     @property
     def has_free_ends(self) -> bool:
-        """Whether neither quoins nor fixed sides hold its stones at one end or the other."""
+        """Tell whether an end of the wall has neither quoins nor a fixed side."""
         return not self.quoins and not {"-x", "+x"} <= {side.face for side in self.sides}
 
     @property
@@ -110,7 +110,7 @@ class PatternWall(Outlined):
 
     @property
     def extent(self) -> tuple[float, float]:
-        """Length and height, of an outline those of the box around it [m]."""
+        """Length and height, of an outline those of its bounding box [m]."""
         if self.outline:
             return self.outline.drawn.size
         assert self.size is not None
@@ -118,12 +118,12 @@ class PatternWall(Outlined):
 
     @property
     def all_openings(self) -> tuple[Opening, ...]:
-        """Those of the case and, after them, those drawn."""
+        """Openings of the case followed by those of the drawing."""
         return self.with_drawn(self.openings)
 
     @property
     def face(self) -> np.ndarray:
-        """Corners of its face, with the gable, of an outline of its convex hull [m], (n, 2)."""
+        """Corners of the face with the gable, of an outline those of its convex hull [m], (n, 2)."""
         if self.outline:
             return pockets.hull(self.outline.drawn.outline)
         length, height = self.extent
@@ -134,7 +134,7 @@ class PatternWall(Outlined):
 
     @property
     def panel(self) -> WallPanel:
-        """Its face without its openings, lintels, arches and quoins."""
+        """Face without openings, lintels, arches and quoins."""
         found = [hole for opening in self.all_openings for hole in opening.void.outlines]
         found += [*self.outline.cut, *self.outline.drawn.beside_hull] if self.outline else []
         return WallPanel(self.face, (*self.squared_ends.values(), *found))
@@ -147,7 +147,7 @@ class PatternWall(Outlined):
 
 
 def _check_quoins(wall: PatternWall, quoins: DressedEnds) -> None:
-    """Raises KeyProblem where quoins leave nothing between them, or openings cross them."""
+    """Raise KeyProblem where quoins leave nothing between them, or openings cross them."""
     length = wall.extent[0]
     if quoins.length > length / 3.0:
         message = f"{quoins.length:g} is not allowed; must be at most {length / 3.0:.4g}, a third of the wall"
@@ -163,7 +163,7 @@ def _check_quoins(wall: PatternWall, quoins: DressedEnds) -> None:
 
 
 def masonry(wall: PatternWall, tiling: Tiling) -> list[Block]:
-    """Base, sides, stones, lintels and arches of a wall, in local places. Raises ValueError: openings leave nothing."""
+    """Create base, sides, stones, lintels and arches of a wall. Raises ValueError: openings leave nothing."""
     if not tiling.stones:
         raise ValueError("the openings leave nothing of the wall")
     return [*_supports(wall), *_quoins(wall), *blocks_of(tiling, wall.thickness), *_over_openings(wall)]
@@ -186,7 +186,7 @@ def _supports(wall: PatternWall) -> list[Block]:
 
 
 def _over_openings(wall: PatternWall) -> list[Block]:
-    """Lintels and voussoirs."""
+    """Create lintels and voussoirs."""
     blocks = []
     for i, opening in enumerate(wall.all_openings):
         if opening.lintel and opening.lintel_box:
@@ -200,7 +200,7 @@ def _over_openings(wall: PatternWall) -> list[Block]:
 
 
 def stone_figures(tiling: Tiling) -> str:
-    """How many stones there are, of which size, and how many are compounds, in words."""
+    """Describe number and size of the stones and the share of compounds in words."""
     areas, compounds = tiling.areas(), sum(len(tiling.parts(k)) > 1 for k in range(len(tiling.stones)))
     text = (
         f"{len(areas):,} stones of {spread(areas)} m2 in elevation, shortest edge {tiling.edge_lengths().min():.3g} m"
@@ -209,5 +209,5 @@ def stone_figures(tiling: Tiling) -> str:
 
 
 def spread(values: np.ndarray) -> str:
-    """Mean and standard deviation of some values, with the least and the largest."""
+    """Format mean and standard deviation of some values, with the least and the largest."""
     return f"{values.mean():.4g} ± {values.std():.2g} ({values.min():.3g} to {values.max():.3g})"

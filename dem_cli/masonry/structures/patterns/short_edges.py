@@ -1,4 +1,4 @@
-"""Short edges of tilings: their ends become one corner, for all stones at once; corners near a hole move onto it."""
+"""Collapse short edges of tilings for all stones at once, and move corners near a hole onto it."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ Sides = np.ndarray  # straight sides of the region and of its holes: both ends o
 
 
 def sides_of(outlines: Sequence[np.ndarray]) -> Sides:
-    """The sides of polygons (n, 2)."""
+    """Return the sides of polygons (n, 2)."""
     return np.concatenate([np.stack([each, np.roll(each, -1, axis=0)], axis=1) for each in outlines])
 
 
 def on_sides(points: np.ndarray, sides: Sides, gap: float) -> np.ndarray:
-    """Whether each point lies on each side, (n_points, n_sides) bool."""
+    """Test which points lie on which sides, (n_points, n_sides) bool."""
     start, along = sides[:, 0], sides[:, 1] - sides[:, 0]
     arms = points[:, None] - start
     share = np.clip((arms * along).sum(axis=2) / (along**2).sum(axis=1), 0.0, 1.0)
@@ -29,7 +29,7 @@ def on_sides(points: np.ndarray, sides: Sides, gap: float) -> np.ndarray:
 
 
 def collapsed(tiling: Tiling, shortest: float, sides: Sides) -> Tiling:
-    """The stones without edges below a length [m]: both ends become one corner, for all stones around it.
+    """Collapse the edges below a length [m]: both ends become one corner, for all stones around it.
 
     Corners on a side of the region stay on it, its own corners stay where they are. Ends that cannot be one (on two
     sides, or a stone would turn inside out) are left as they are. Stones that lose their area are gone.
@@ -54,7 +54,7 @@ def collapsed(tiling: Tiling, shortest: float, sides: Sides) -> Tiling:
 
 
 def drawn_onto(tiling: Tiling, holes: Sequence[np.ndarray], reach: float, sides: Sides) -> Tiling:
-    """The stones with corners closer than `reach` [m] to a side of a hole moved onto it: no slivers along openings."""
+    """Move corners closer than `reach` [m] to a side of a hole onto it, so that openings have no slivers."""
     gap = SAME * polygon.size(tiling.corners)
     on = on_sides(tiling.corners, sides, gap)
     places = tiling.corners.copy()
@@ -73,7 +73,7 @@ def drawn_onto(tiling: Tiling, holes: Sequence[np.ndarray], reach: float, sides:
 
 
 def _drawn_onto_side(places: np.ndarray, start: np.ndarray, end: np.ndarray, reach: float) -> np.ndarray:
-    """Points near a side moved onto it, those near one of its ends to that end."""
+    """Move points near a side onto it, those near one of its ends to that end."""
     along, arms = end - start, places - start
     length = float(np.hypot(*along))
     share = np.clip(product(arms, along) / length**2, 0.0, 1.0)
@@ -95,7 +95,7 @@ def _short_edges(tiling: Tiling, shortest: float) -> list[tuple[int, int]]:
 
 
 def _groups(edges: Sequence[tuple[int, int]], n: int) -> list[list[int]]:
-    """Corners that become one, by union-find: groups of two and more, (corners in rising order)."""
+    """Group corners that become one, by union-find: groups of two and more (corners in rising order)."""
     parent = list(range(n))
 
     def first(i: int) -> int:
@@ -116,7 +116,7 @@ def _groups(edges: Sequence[tuple[int, int]], n: int) -> list[list[int]]:
 def _places(
     corners: np.ndarray, groups: Sequence[list[int]], on: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, set[int]]:
-    """For each corner the one that stands for it, their places, and corners of groups that have no common place."""
+    """Return the representative of each corner, their places, and corners of groups without a common place."""
     target, places, wrong = np.arange(len(corners)), corners.copy(), set()
     for group in groups:
         held = on[group].any(axis=0)  # sides on which the group has to stay
@@ -130,14 +130,14 @@ def _places(
 
 
 def _renamed(loop: Loop, target: np.ndarray) -> Loop:
-    """A loop with the corners that stand for its own, each once; (): nothing is left of it."""
+    """Replace the corners of a loop by their representatives, each once; (): nothing is left of it."""
     names = [int(target[i]) for i in loop]
     kept = [i for k, i in enumerate(names) if i != names[k - 1]]
     return tuple(kept) if len(kept) > 2 else ()
 
 
 def _bent(places: np.ndarray, before: Sequence[Loop], after: Sequence[Loop], target: np.ndarray) -> set[int]:
-    """Corners of stones that have come to touch themselves or to turn inside out."""
+    """Find the corners of stones that now touch themselves or are inside out."""
     wrong: set[int] = set()
     moved = np.zeros(len(target), bool)
     lost = np.flatnonzero(target != np.arange(len(target)))

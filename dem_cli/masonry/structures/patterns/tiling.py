@@ -1,4 +1,4 @@
-"""Tilings: stones that fill a plane region without gaps, with common corners; united, merged with neighbours.
+"""Tilings: stones that fill a plane region without gaps and share corners; united, merged with neighbours.
 
 A corner is one point for all stones around it, so that faces of neighbours are the same to the last bit.
 """
@@ -20,7 +20,7 @@ SAME = 1e-9  # relative to the region: closer points are one
 
 @dataclass
 class Tiling:
-    """Stones of a region of the plane.
+    """Tiling of a plane region by stones with shared corners.
 
     corners  [m], (n, 2)
     stones   corners around each stone, which may be concave; those of its neighbours on its sides are among them
@@ -32,38 +32,38 @@ class Tiling:
     courses: list[int]
 
     def outline(self, k: int) -> np.ndarray:
-        """Corners of a stone [m], (n, 2)."""
+        """Return the corners of a stone [m], (n, 2)."""
         return self.corners[list(self.stones[k])]
 
     def areas(self) -> np.ndarray:
-        """Area of each stone [m2], (n_stones,)."""
+        """Return the area of each stone [m2], (n_stones,)."""
         starts = np.cumsum([0, *map(len, self.stones)])
         return polygon.properties_of_all(self.corners[[i for loop in self.stones for i in loop]], starts).area
 
     def parts(self, k: int) -> tuple[np.ndarray, ...]:
-        """Convex parts of a stone, corners on straight sides left out: edges on one line are one face of a part."""
+        """Return the convex parts of a stone without corners on straight sides: edges on one line are one face."""
         outline = polygon.simplified(self.outline(k), ROUND_OFF)
         if polygon.is_convex(outline):
             return (outline,)
         return tuple(polygon.simplified(outline[part], ROUND_OFF) for part in convex_parts(outline))
 
     def edges(self) -> dict[tuple[int, int], int]:
-        """The stone to the left of each edge, from corner to corner."""
+        """Return the stone to the left of each edge, from corner to corner."""
         return {edge: k for k, loop in enumerate(self.stones) for edge in around(loop)}
 
     def edge_lengths(self) -> np.ndarray:
-        """Lengths of all edges [m], each once, (n,)."""
+        """Return the lengths of all edges [m], each once, (n,)."""
         pairs = np.array(sorted({(min(edge), max(edge)) for loop in self.stones for edge in around(loop)}))
         return np.hypot(*(self.corners[pairs[:, 1]] - self.corners[pairs[:, 0]]).T)
 
 
 def around(loop: Loop) -> Iterable[tuple[int, int]]:
-    """The edges of a loop, from corner to corner."""
+    """Return the edges of a loop, from corner to corner."""
     return zip(loop, (*loop[1:], loop[0]), strict=True)
 
 
 def united(loops: Sequence[Loop]) -> list[Loop]:
-    """Outlines of stones that are put together: one for each group that hangs together by whole edges.
+    """Unite stones to outlines: one for each group connected by whole edges.
 
     A group around a hole, or that touches itself in a corner, has no single outline: it stays as it was.
     """
@@ -88,7 +88,7 @@ def united(loops: Sequence[Loop]) -> list[Loop]:
 
 
 def _outline(loops: Sequence[Loop]) -> Loop | None:
-    """The single outline of some stones; None: there are several, or one that touches itself."""
+    """Return the single outline of some stones; None: there are several, or one that touches itself."""
     edges = {edge for loop in loops for edge in around(loop)}
     free = [(a, b) for loop in loops for a, b in around(loop) if (b, a) not in edges]
     following = dict(free)
@@ -102,12 +102,12 @@ def _outline(loops: Sequence[Loop]) -> Loop | None:
 
 
 def width(outline: np.ndarray) -> float:
-    """Twice the area over the size of a stone [m]: of a strip its width, twice."""
+    """Return twice the area over the size of a stone [m]; of a strip twice its width."""
     return 2.0 * polygon.area(outline) / polygon.size(outline)
 
 
 def merged(tiling: Tiling, least: float, narrowest: float = 0.0) -> Tiling:
-    """Stones below an area `least` [m2] or a width [m] joined to the neighbour with which they share the longest face.
+    """Merge stones below an area `least` [m2] or a width [m] with the neighbour of the longest shared face.
 
     A stone that has no neighbour stays.
     """

@@ -54,7 +54,7 @@ class VoronoiPattern(CaseModel):
         return self
 
     def count(self, area: float) -> int:
-        """Number of stones of an area [m2]. Raises KeyProblem: too few, too many."""
+        """Return the number of stones of an area [m2]. Raises KeyProblem: too few, too many."""
         if self.cell is None:
             return self.cells or FEWEST_CELLS
         count = area / self.cell**2
@@ -68,7 +68,7 @@ class VoronoiPattern(CaseModel):
 
 
 def stones_in(panel: WallPanel, pattern: VoronoiPattern, draws: np.random.Generator) -> Tiling:
-    """Voronoi stones that fill a panel; slivers at its holes are parts of their neighbours.
+    """Generate Voronoi stones that fill a panel; slivers at its holes join their neighbours.
 
     Stones that are not convex, because short edges collapsed or slivers were added, are compounds of convex parts.
     """
@@ -78,7 +78,7 @@ def stones_in(panel: WallPanel, pattern: VoronoiPattern, draws: np.random.Genera
 
 
 def cells_in(outline: np.ndarray, count: int, pattern: VoronoiPattern, draws: np.random.Generator) -> Tiling:
-    """Voronoi cells of `count` random seeds that fill a convex outline (n, 2) exactly."""
+    """Generate Voronoi cells of `count` random seeds that fill a convex outline (n, 2) exactly."""
     low, (long, high) = outline.min(axis=0), np.ptp(outline, axis=0)
     if min(long, high) < FLATTEST * max(long, high):
         raise KeyProblem(f"needs sides that differ by less than 1 to {1 / FLATTEST:g}; found {long:g} by {high:g} m")
@@ -97,7 +97,7 @@ def cells_in(outline: np.ndarray, count: int, pattern: VoronoiPattern, draws: np
 
 
 def _seeds(outline: np.ndarray, count: int, draws: np.random.Generator) -> np.ndarray:
-    """Random points, uniform in a convex outline, (count, 2)."""
+    """Draw random points, uniform in a convex outline, (count, 2)."""
     low, high = outline.min(axis=0), outline.max(axis=0)
     edges = np.roll(outline, -1, axis=0) - outline
     found: list[np.ndarray] = []
@@ -110,7 +110,7 @@ def _seeds(outline: np.ndarray, count: int, draws: np.random.Generator) -> np.nd
 
 
 def _voronoi(outline: np.ndarray, seeds: np.ndarray) -> Tiling:
-    """Cells of the seeds within a convex outline: their images in its sides make the sides edges of cells."""
+    """Compute Voronoi cells within a convex outline: mirrored seeds make its sides edges of cells."""
     from scipy.spatial import Voronoi
 
     images = []
@@ -130,7 +130,7 @@ def _voronoi(outline: np.ndarray, seeds: np.ndarray) -> Tiling:
 
 
 def _first_of_same(points: np.ndarray, gap: float) -> np.ndarray:
-    """For each point the number of the first one in the same place: Qhull repeats corners of four cells."""
+    """Return for each point the first one in the same place: Qhull repeats corners of four cells."""
     from scipy.spatial import cKDTree
 
     names = np.arange(len(points))
@@ -140,7 +140,7 @@ def _first_of_same(points: np.ndarray, gap: float) -> np.ndarray:
 
 
 def _on_outline(points: np.ndarray, outline: np.ndarray) -> np.ndarray:
-    """The points, those within round-off of a corner or an upright or level side exactly there."""
+    """Snap points within round-off to the corners and the upright or level sides of an outline."""
     points, gap = points.copy(), SAME * polygon.size(outline)
     for start, end in zip(outline, np.roll(outline, -1, axis=0), strict=True):
         for axis in (0, 1):

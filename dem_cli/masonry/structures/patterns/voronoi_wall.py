@@ -1,4 +1,4 @@
-"""Rubble walls and polygonal masonry: stones are Voronoi cells, prisms across the thickness of the wall."""
+"""Generate rubble walls and polygonal masonry: Voronoi cells as prisms across the thickness of the wall."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ RELAXED = 3  # Lloyd steps from which most free-standing walls stand at 35°: 6 
 
 
 class VoronoiWall(RandomStructure, PatternWall, voronoi.VoronoiPattern):
-    """Stones without courses, the Voronoi cells of random points: rubble, with many Lloyd steps polygonal masonry.
-    Local origin: lower left corner of the wall, on top of its base; in 3D half of the thickness lies to either side.
+    """Wall of stones without courses, the Voronoi cells of random points: rubble, with many Lloyd steps polygonal
+    masonry. Local origin: lower left corner of the wall, on top of its base; in 3D half of the thickness lies to either
+    side.
 
     Block names: "<id>-<number>" from 1, from the lowest stone up; "<id>-base"; "<id>-lintel-<opening>",
     "<id>-arch-<opening>-<number>"; "<id>-side-<number>", "<id>-side-<number>-left" and so on. A stone that is not
@@ -35,21 +36,21 @@ class VoronoiWall(RandomStructure, PatternWall, voronoi.VoronoiPattern):
 
 
 def build(wall: VoronoiWall) -> list[Block]:
-    """Blocks in local places: the base first, lintels last."""
+    """Generate the blocks of a Voronoi wall: the base first, lintels last."""
     return masonry(wall, stones(wall))
 
 
 @drawn_once
 def stones(wall: VoronoiWall) -> Tiling:
-    """The stones of a wall."""
+    """Draw the stones of a Voronoi wall."""
     return voronoi.stones_in(wall.panel, wall, np.random.default_rng(wall.seed))
 
 
 def figures(wall: VoronoiWall) -> list[tuple[str, str]]:
-    """What was drawn, for `dem check`."""
+    """Describe the drawn stones, for `dem check`."""
     return [("stones", stone_figures(stones(wall)))]
 
 
 def loose_ends(wall: VoronoiWall) -> str:
-    """The key by which stones may slide out at free ends; "": none."""
+    """Return the key by which stones may slide out at free ends; "": none."""
     return "relax" if wall.relax < RELAXED and wall.has_free_ends else ""

@@ -1,4 +1,4 @@
-"""Cross-sections of walls of three leaves: two faces of coursed stones, a core of rubble, through-stones."""
+"""Generate cross-sections of three-leaf walls: two faces of coursed stones, a rubble core, through-stones."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from dem_cli.masonry.structures.patterns.voronoi import VoronoiPattern, stones_i
 
 
 class WallSection(RandomStructure):
-    """A wall of three leaves as seen from its end: to study how it bulges, parts and falls out of its plane. Local
+    """Cross-section of a three-leaf wall, to study how it bulges, separates and falls out of its plane. Local
     origin: foot of the left face, on top of the base; in 3D half of the length `thickness` lies to either side.
 
     Block names: "<id>-left-<course>", "<id>-right-<course>" for the faces, "<id>-through-<course>",
@@ -66,7 +66,7 @@ class WallSection(RandomStructure):
 
 
 def build(section: WallSection) -> list[Block]:
-    """Blocks in local places: base, faces and through-stones by course, core."""
+    """Generate the blocks of a wall section: base, faces and through-stones by course, core."""
     width, blocks = section.size[0], []
     if section.base:
         depth, extension = section.base_height or section.course[0], section.base_extension
@@ -81,13 +81,13 @@ def build(section: WallSection) -> list[Block]:
 
 
 def figures(section: WallSection) -> list[tuple[str, str]]:
-    """What was drawn, for `dem check`."""
+    """Describe the drawn stones of the core, for `dem check`."""
     return [("core", stone_figures(_stones(section)[1]))]
 
 
 @drawn_once
 def _stones(section: WallSection) -> tuple[list[tuple[str, np.ndarray, int]], Tiling]:
-    """Names, shapes and courses of the stones of faces and through-stones; stones of the core."""
+    """Generate names, shapes and courses of face and through-stones, and the stones of the core."""
     draws = np.random.default_rng(section.seed)
     (width, height), (mean, deviation) = section.size, section.face
     levels = divided(height, section.course, draws).tolist()

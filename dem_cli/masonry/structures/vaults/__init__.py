@@ -1,1 +1,1 @@
-"""Vaults: barrel, groin and dome."""
+"""Generate vaults: barrel, groin, cloister and dome."""

@@ -1,4 +1,4 @@
-"""Barrel vaults: an arch drawn along a tunnel, its courses cut into stones whose heads are staggered."""
+"""Generate barrel vaults: an arch extended along a tunnel, its courses cut into staggered stones."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from dem_cli.masonry.structures.vaults.table import Vault
 
 
 def build_barrel(vault: Vault) -> list[Block]:
-    """Blocks in local places: fixed ones, walls from below, voussoirs from left to right, each from the front."""
+    """Generate the blocks of a barrel vault: fixed ones, walls from below, voussoirs left to right, front to back."""
     length = vault.length or 0.0
     section = arch_of(vault, columns=vault.piers, base=vault.base, thickness=length)
     stone = length / vault.rows
@@ -33,7 +33,7 @@ def build_barrel(vault: Vault) -> list[Block]:
 
 
 def _courses(blocks: list[Block], section: arch.Arch) -> Iterator[tuple[Block, int, bool]]:
-    """Blocks of the section with their course from the foot (0: fixed), and whether that is one of every other."""
+    """Yield the blocks of the section with their course from the foot (0: fixed), and whether it is staggered."""
     n, lift = section.voussoirs, section.piers.courses if section.piers else 0
     for block in blocks:
         name = block.id.split("-")
@@ -48,6 +48,6 @@ def _courses(blocks: list[Block], section: arch.Arch) -> Iterator[tuple[Block, i
 
 
 def cut_along(block: Block, places: np.ndarray) -> list[Block]:
-    """Stones of a block that is drawn in a plane, between places square to it [m], from the front."""
+    """Cut a block drawn in a plane into stones between places square to it [m], from the front."""
     pairs = zip(places[:-1].tolist(), places[1:].tolist(), strict=True)
     return [replace(block, id=f"{block.id}-{n}", across=pair) for n, pair in enumerate(pairs, 1)]

@@ -1,4 +1,4 @@
-"""Cloister (domical) vaults: four webs of barrels that rise from four walls and meet in the diagonal planes of a bay.
+"""Generate cloister (domical) vaults: four barrel webs that rise from four walls and meet in the diagonal planes.
 
 Each web is half of a barrel along its wall, as long in every height as it is away from the middle: what a groin vault
 leaves out of its two barrels.
@@ -20,7 +20,9 @@ from dem_cli.masonry.structures.vaults.webs import SIDES, Bay, along_y, at_corne
 
 
 def build_cloister(vault: Vault) -> list[Block]:
-    """Blocks in local places: fixed ones, walls from below, courses from the springing up, the boss."""
+    """Generate the blocks of a cloister vault: fixed ones, walls from below, courses from the springing up, the
+    boss.
+    """
     bay = bay_of(vault)
     joints = bay.joints[len(bay.joints) // 2 :].copy()  # of half the profile, from the crown down
     joints[np.abs(joints) <= 1e-12 * bay.half] = 0.0
@@ -44,12 +46,12 @@ def build_cloister(vault: Vault) -> list[Block]:
 
 
 def _level(vault: Vault, course: int) -> int:
-    """Number of a course of the vault from the foot of the walls."""
+    """Return the number of a course of the vault from the foot of the walls."""
     return course + (vault.piers.courses if vault.piers else 0)
 
 
 def _wall_faces(vault: Vault) -> list[np.ndarray]:
-    """Courses of a wall across it from below, as those of a pier of the arch that is the profile, each (n, 2)."""
+    """Return the cross-sections of a wall's courses from below, as of a pier of the profile arch, each (n, 2)."""
     if vault.piers is None:
         return []
     drawn = arch.build(arch_of(vault, columns=vault.piers, base=False))
@@ -57,7 +59,7 @@ def _wall_faces(vault: Vault) -> list[np.ndarray]:
 
 
 def _course(vault: Vault, bay: Bay, face: np.ndarray, course: int, name: str) -> Iterator[Block]:
-    """Stones of a course that looks so across, face (n, 2): of four webs and, astride, of four corners.
+    """Yield the stones of a course with cross-section face (n, 2): of four webs and, astride, of four corners.
 
     course: from the springing, 1 above it, 0 and less below.
     """
@@ -79,7 +81,7 @@ def _course(vault: Vault, bay: Bay, face: np.ndarray, course: int, name: str) ->
 
 
 def _heads(face: np.ndarray, stone: float, course: int) -> list[float]:
-    """Distances of the heads of a course from the middle of a web [m]: 0 in every other course, else half a stone off.
+    """Return the distances of head joints from the middle of a web [m]: half a stone off in every other course.
 
     What is left towards the groin is at least a quarter of a stone long; the only head of a short course is at 0.
     """
@@ -89,12 +91,12 @@ def _heads(face: np.ndarray, stone: float, course: int) -> list[float]:
 
 
 def _piece(face: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Corners of a stone of the northern web of a square bay, from start to end along x at each corner, (2 n, 3)."""
+    """Return the corners of a stone of the northern web of a square bay, from start to end along x, (2 n, 3)."""
     return np.concatenate([np.column_stack([x, face]) for x in (start, end)])
 
 
 def _base(vault: Vault, bay: Bay, foot: np.ndarray) -> Iterator[Block]:
-    """Fixed blocks below the foot of the walls or the springings, from inside out (2, 2), mitred."""
+    """Yield the mitred fixed blocks below the foot of the walls or the springings, from inside out (2, 2)."""
     (inner, low), (outer, high) = foot.tolist()
     face = np.array([[-inner, inner, low], [inner, inner, low], [outer, outer, high], [-outer, outer, high]])
     below = skewed(face, np.array([0.0, 0.0, -vault.thickness])).vertices

@@ -1,4 +1,4 @@
-"""Domes of plane facets: corners on two spheres, bed faces towards their centre, so that neighbours share every face.
+"""Generate domes of plane facets: corners on two spheres, bed faces towards their centre, shared faces.
 
 Between two meridians and two parallels the corners make a hexahedron with plane faces: its beds and heads go through
 the centre, inner and outer face are trapezia. A stone is one or more of them side by side: with two, heads of one
@@ -24,7 +24,7 @@ DOWN = np.array([0.0, 0.0, -1.0])
 
 
 def build_dome(vault: Vault) -> list[Block]:
-    """Blocks in local places: base, drum, courses from the springing up, cap."""
+    """Generate the blocks of a dome: base, drum, courses from the springing up, cap."""
     counts, facets = _counts(vault)
     angles = parallels(vault)
     inner, outer = _required(vault.radius) - vault.thickness / 2.0, _required(vault.radius) + vault.thickness / 2.0
@@ -45,7 +45,7 @@ def build_dome(vault: Vault) -> list[Block]:
 
 
 def parallels(vault: Vault) -> np.ndarray:
-    """Angles of the bed joints from the crown, from the springing up [rad], (courses + 1,)."""
+    """Return the angles of the bed joints from the crown, from the springing up [rad], (courses + 1,)."""
     courses, springing = _required(vault.courses), np.radians(vault.springing_deg)
     if vault.oculus_radius is not None:
         sine, key = vault.oculus_radius / (_required(vault.radius) - vault.thickness / 2.0), "oculus_radius"
@@ -66,7 +66,7 @@ def _has_cap(vault: Vault) -> bool:
 
 
 def _counts(vault: Vault) -> tuple[list[int], int]:
-    """Stones in each course, facets around. Raises KeyProblem."""
+    """Return the number of stones in each course and of facets around. Raises KeyProblem."""
     given, courses = vault.per_course, _required(vault.courses)
     counts = list(given) if isinstance(given, tuple) else [_required(given)] * courses
     if len(counts) != courses:
@@ -82,7 +82,7 @@ def _counts(vault: Vault) -> tuple[list[int], int]:
 
 
 def _first_heads(vault: Vault, counts: Sequence[int], facets: int) -> list[int]:
-    """Facet at which the first stone of each course starts: above the middle of a stone of the course below."""
+    """Return the first facet of the first stone of each course: above the middle of a stone below."""
     firsts = [0]
     for below, here in zip(counts[:-1], counts[1:], strict=True):
         shift = facets // max(below, here) // 2 if vault.bond == "running" else 0
@@ -91,7 +91,7 @@ def _first_heads(vault: Vault, counts: Sequence[int], facets: int) -> list[int]:
 
 
 def _corners(angles: np.ndarray, radii: tuple[float, float], facets: int) -> np.ndarray:
-    """Corners (parallels, inner and outer, meridians, 3) on two spheres about the origin."""
+    """Compute the corners (parallels, inner and outer, meridians, 3) on two spheres about the origin."""
     turns = 2.0 * np.pi * np.arange(facets) / facets
     sines, cosines = np.sin(angles), np.cos(angles)
     cosines[angles == np.pi / 2.0] = 0.0
@@ -102,13 +102,13 @@ def _corners(angles: np.ndarray, radii: tuple[float, float], facets: int) -> np.
 
 
 def _bed(parallel: np.ndarray, j: int) -> np.ndarray:
-    """Bed face of facet j on a parallel (inner and outer, meridians, 3), (4, 3)."""
+    """Return the bed face of facet j on a parallel (inner and outer, meridians, 3), (4, 3)."""
     after = (j + 1) % parallel.shape[1]
     return np.array([parallel[0, j], parallel[1, j], parallel[1, after], parallel[0, after]])
 
 
 def _stones(prefix: str, solids: Sequence[Solids], count: int, first: int, **others: Any) -> list[Block]:
-    """Stones of a course from what each facet around it has of them."""
+    """Combine the facets around a course to its stones."""
     each = len(solids) // count
     blocks = []
     for n in range(count):
@@ -119,7 +119,7 @@ def _stones(prefix: str, solids: Sequence[Solids], count: int, first: int, **oth
 
 
 def _below(vault: Vault, springing: np.ndarray, count: int) -> list[Block]:
-    """The drum, its uppermost course cut to the springing; fixed blocks below, one for each stone."""
+    """Generate the drum, its uppermost course cut to the springing, and a fixed block below each stone."""
     facets = springing.shape[1]
     blocks: list[Block] = []
     foot = [_bed(springing, j) for j in range(facets)]
@@ -132,7 +132,9 @@ def _below(vault: Vault, springing: np.ndarray, count: int) -> list[Block]:
 
 
 def _drum(vault: Vault, springing: np.ndarray, count: int) -> tuple[list[np.ndarray], list[Block]]:
-    """Foot faces by facet, and the courses of the drum from below; the uppermost ends level with the outer face."""
+    """Return foot faces by facet, and the courses of the drum from below; the uppermost ends level with the outer
+    face.
+    """
     drum = _required(vault.drum)
     inner, outer = springing
     reach, least = np.hypot(*inner[0, :2]) + drum.width, np.hypot(*outer[0, :2]) - np.hypot(*inner[0, :2])
@@ -157,11 +159,11 @@ def _drum(vault: Vault, springing: np.ndarray, count: int) -> tuple[list[np.ndar
 
 
 def _level(ring: np.ndarray, height: float) -> np.ndarray:
-    """A ring (..., 3) brought upright to a level [m]."""
+    """Project a ring (..., 3) vertically to a level [m]."""
     return ring * [1.0, 1.0, 0.0] + [0.0, 0.0, height]
 
 
 def _required(value: Any) -> Any:
-    """A key that its shape needs, and that the table has checked."""
+    """Return a value that the table has already checked to be present."""
     assert value is not None
     return value

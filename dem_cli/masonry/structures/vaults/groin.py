@@ -1,4 +1,4 @@
-"""Groin (cross) vaults: two barrels over a bay that meet in its diagonal planes, on four corners."""
+"""Generate groin (cross) vaults: two barrels over a bay that meet in its diagonal planes, on four corners."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from dem_cli.masonry.structures.vaults.webs import (
 
 
 def build_groin(vault: Vault) -> list[Block]:
-    """Blocks in local places: fixed ones, piers, stones astride the groins, webs."""
+    """Generate the blocks of a groin vault: fixed ones, piers, stones astride the groins, webs."""
     bay = bay_of(vault)
     return [*_feet(vault, bay), *_stones(vault, bay)]
 
 
 def _stones(vault: Vault, bay: Bay) -> Iterator[Block]:
-    """Stones of the webs and astride their groins, from the springings up."""
+    """Yield the stones of the webs and astride their groins, from the springings up."""
     n = len(bay.joints) - 1
     stone = 2.0 * bay.half / vault.rows
     for k in sorted(range(n), key=lambda k: (min(k, n - 1 - k), k)):
@@ -51,7 +51,7 @@ def _stones(vault: Vault, bay: Bay) -> Iterator[Block]:
 
 
 def _astride(bay: Bay, piece: np.ndarray, k: int, course: int) -> Iterator[Block]:
-    """Stones that turn the corner: two pieces; four of the keystones make the boss."""
+    """Yield the corner stones of two pieces each; four of the keystones make the boss."""
     n = len(bay.joints) - 1
     if 2 * k + 1 == n:
         yield Block("boss", tuple(placed(piece, bay, side) for side in SIDES), "", course=course)
@@ -61,7 +61,7 @@ def _astride(bay: Bay, piece: np.ndarray, k: int, course: int) -> Iterator[Block
 
 
 def _heads(bay: Bay, k: int, stone: float, odd: bool) -> list[float]:
-    """Distances from the middle of the heads of voussoir k in a web, along x of the square bay, up to its edge [m].
+    """Return the distances of the heads of voussoir k from the middle of a web, along x of the square bay [m].
 
     What is left towards the groin is at least a quarter of a stone long.
     """
@@ -72,7 +72,9 @@ def _heads(bay: Bay, k: int, stone: float, odd: bool) -> list[float]:
 
 
 def _piece(bay: Bay, k: int, low: float | None, high: float) -> np.ndarray:
-    """Corners of voussoir k of the northern web of a square bay, from low (None: the groin) to high, (n, 3)."""
+    """Return the corners of voussoir k of the northern web of a square bay, from low (None: the groin) to high, (n,
+    3).
+    """
     (inner, outer), (next_inner, next_outer) = bay.joints[k : k + 2]
     face = np.array([inner, outer, next_outer, next_inner])
     if low is None and 2 * k + 2 == len(bay.joints):  # the keystone goes to the middle of the bay
@@ -83,7 +85,7 @@ def _piece(bay: Bay, k: int, low: float | None, high: float) -> np.ndarray:
 
 
 def _feet(vault: Vault, bay: Bay) -> Iterator[Block]:
-    """Fixed blocks and piers at the corners, from below."""
+    """Yield fixed blocks and piers at the corners, from below."""
     (inner, outer), s = bay.joints[-1], bay.stretch
     foot = np.array([[inner[0], inner[0], inner[1]], [outer[0], outer[0], outer[1]], [inner[0], outer[0], inner[1]]])
     feet = [along_y(bay)(foot), along_x(bay)(foot)]  # below the piece of each web
@@ -105,7 +107,7 @@ def _feet(vault: Vault, bay: Bay) -> Iterator[Block]:
 
 
 def _pier(pier: Pier, low: np.ndarray, feet: list[np.ndarray], outer: np.ndarray) -> list[tuple[Polyhedron, ...]]:
-    """Courses of a pier at the corner (+x, +y); the uppermost one is cut to the feet of both webs."""
+    """Return the courses of a pier at the corner (+x, +y); the uppermost one is cut to the feet of both webs."""
     least = float((outer - low).max())
     if pier.width < least * (1.0 - 1e-9):
         message = f"{pier.width:g} is not allowed; must be at least {least:g}, as the springing of the webs"

@@ -1,4 +1,4 @@
-"""Profile of a barrel or groin vault: the arch that is drawn along it, and the heads along its courses."""
+"""Profile of a barrel or groin vault: the arch of its section, and the head joints along its courses."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ NAMES = {"ring": "thickness", "columns": "piers", "inner_radius": "span"}  # of 
 
 
 def arch_of(vault: Vault, **others: Any) -> Arch:
-    """The arch in the plane that is the section of a vault. Raises KeyProblem with the key of the vault."""
+    """Create the plane arch of a vault's section. Raises KeyProblem with the key of the vault."""
     half = vault.span / 2.0 if vault.span else 0.0
     given: dict[str, Any] = {"voussoirs": vault.voussoirs, "ring": vault.thickness} | others
     if vault.included_angle_deg is not None:
@@ -35,7 +35,7 @@ def arch_of(vault: Vault, **others: Any) -> Arch:
 
 
 def symmetric_joints(arch: Arch) -> np.ndarray:
-    """Joints [inner, outer] of an arch from left to right, (voussoirs + 1, 2, 2), symmetric to the last bit.
+    """Return the joints [inner, outer] of an arch, (voussoirs + 1, 2, 2), symmetric to the last bit.
 
     The right half is as drawn; the left one is its mirror image.
     """
@@ -45,7 +45,7 @@ def symmetric_joints(arch: Arch) -> np.ndarray:
 
 
 def heads_along(length: float, stone: float, shift: float) -> np.ndarray:
-    """Places of the heads of a course from 0 to its length; the first stone is as long as `shift`, where that is not 0.
+    """Return the head joints of a course from 0 to its length; the first stone is `shift` long, where not 0.
 
     Pieces shorter than a quarter of a stone join their neighbour.
     """
@@ -55,8 +55,9 @@ def heads_along(length: float, stone: float, shift: float) -> np.ndarray:
 
 
 def side_of_crown(course: int, number: int, count: int) -> str:
-    """Row of a voussoir, by its course from the springing and its number from 1 of `count`: "" but next to a crown
-    joint, where the uppermost courses of both sides have the same number and meet in a bed.
+    """Return the row of a voussoir by its course and its number from 1 of `count`: "" except next to a crown joint.
+
+    There the uppermost courses of both sides have the same number and meet in a bed: rows "left" and "right".
     """
     if 2 * course != count:
         return ""

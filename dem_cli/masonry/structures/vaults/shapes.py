@@ -1,4 +1,4 @@
-"""Shapes of vaults: which function draws which."""
+"""Registry of the vault shapes and their generators."""
 
 from __future__ import annotations
 
@@ -20,5 +20,5 @@ SHAPES: dict[str, Callable[[Vault], list[Block]]] = {
 
 
 def build(vault: Vault) -> list[Block]:
-    """Blocks of a vault in local places."""
+    """Generate the blocks of a vault in local places."""
     return SHAPES[vault.shape](vault)

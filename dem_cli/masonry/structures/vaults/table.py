@@ -1,4 +1,4 @@
-"""Vaults: barrels, groin (cross) and cloister (domical) vaults over a bay, domes; the table of kind = "vault"."""
+"""Table of kind = "vault": barrels, groin (cross) and cloister (domical) vaults over a bay, domes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OF_SHAPE = {  # keys that not every shape has: those needed, those that may be g
 
 
 class Vault(StructureBase):
-    """A vault of cut stones in 3D. Local origin: in the middle of its plan, at the level where the inner face starts,
+    """Vault of cut stones in 3D. Local origin: in the middle of its plan, at the level where the inner face starts,
     with piers or a drum on the ground below them.
 
     Block names: of a barrel "<id>-<voussoir>-<number>", voussoirs from left to right as in an arch, numbers along it
@@ -133,7 +133,7 @@ class Vault(StructureBase):
 
     @property
     def on_ground(self) -> bool:
-        """Whether a [ground] takes the place of its base: of piers or a drum; springings without any stay fixed."""
+        """Tell whether a [ground] block replaces the base of piers or a drum; bare springings stay fixed."""
         return self.piers is not None or self.drum is not None
 
     @model_validator(mode="after")

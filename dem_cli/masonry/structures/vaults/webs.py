@@ -1,4 +1,4 @@
-"""Webs of vaults over a bay: barrels that meet in its diagonal planes, one drawn, the others turned and mirrored.
+"""Webs of vaults over a bay: barrels that meet in its diagonal planes, one drawn, the others transformed.
 
 The second barrel is the first one stretched by the ratio of the spans, so that webs meet in planes: corners of both
 webs there are the same points. One eighth is drawn; the rest is its mirror images, exact to the last bit.
@@ -23,7 +23,7 @@ CORNERS = {"sw": (-1.0, -1.0), "se": (1.0, -1.0), "ne": (1.0, 1.0), "nw": (-1.0,
 
 
 class Bay(NamedTuple):
-    """What the webs of a vault have in common; a web is drawn as the northern one of a square bay."""
+    """Bay with the common dimensions of its webs; a web is drawn as the northern one of a square bay."""
 
     joints: np.ndarray  # of the profile [inner, outer], across and up, (voussoirs + 1, 2, 2)
     stretch: float  # of y against x
@@ -31,7 +31,7 @@ class Bay(NamedTuple):
 
 
 def bay_of(vault: Vault) -> Bay:
-    """The bay of a groin or a cloister vault."""
+    """Create the bay of a groin or a cloister vault."""
     joints = symmetric_joints(arch_of(vault))
     joints[..., 1] += vault.piers.height if vault.piers else 0.0
     span = vault.span or 0.0
@@ -39,7 +39,7 @@ def bay_of(vault: Vault) -> Bay:
 
 
 def placed(piece: np.ndarray, bay: Bay, side: str) -> Polyhedron:
-    """A piece of the northern web in its place in another one; stones count from the west or from the south."""
+    """Transform a piece of the northern web to another web; stones count from the west or from the south."""
     return solid(
         {
             "north": lambda: along_y(bay)(piece),
@@ -51,7 +51,7 @@ def placed(piece: np.ndarray, bay: Bay, side: str) -> Polyhedron:
 
 
 def at_corners(piece: np.ndarray, bay: Bay) -> dict[str, tuple[Polyhedron, ...]]:
-    """What turns a corner: a piece of the northern web that meets the eastern one, with its image there, by corner."""
+    """Create corner stones: a piece of the northern web with its mirror image in the adjacent one, by corner."""
     return {
         name: tuple(solid(turned(piece) * [x, y, 1.0]) for turned in (along_y(bay), along_x(bay)))
         for name, (x, y) in CORNERS.items()
@@ -59,22 +59,22 @@ def at_corners(piece: np.ndarray, bay: Bay) -> dict[str, tuple[Polyhedron, ...]]
 
 
 def along_y(bay: Bay) -> Place:
-    """From the square bay to the northern web."""
+    """Return the transformation from the square bay to the northern web."""
     return lambda piece: piece * [1.0, bay.stretch, 1.0]
 
 
 def along_x(bay: Bay) -> Place:
-    """From the square bay to the eastern web."""
+    """Return the transformation from the square bay to the eastern web."""
     return lambda piece: piece[:, [1, 0, 2]] * [1.0, bay.stretch, 1.0]
 
 
 def solid(piece: np.ndarray) -> Polyhedron:
-    """The polyhedron of a piece; that of a keystone of a groin vault has points within its edges."""
+    """Create the polyhedron of a piece; a keystone of a groin vault has points within its edges."""
     return hull(piece) if len(piece) > EIGHT else frustum(*np.split(piece, 2))
 
 
 def mirrored(parts: tuple[Polyhedron, ...], signs: tuple[float, float]) -> tuple[Polyhedron, ...]:
-    """Polyhedra at (+x, +y) in the corner of these signs; mirrored ones have their faces turned round."""
+    """Mirror polyhedra from (+x, +y) to the corner of these signs; mirrored ones have their faces flipped."""
     flip = signs[0] * signs[1] < 0.0
     return tuple(
         Polyhedron(part.vertices * [*signs, 1.0], tuple(face[::-1] for face in part.faces) if flip else part.faces)

@@ -1,1 +1,1 @@
-"""Integrity of results that are read back: arrays and the summary, each against one declaration of what they are."""
+"""Integrity checks of results that are read back: arrays and summary against one declaration."""

@@ -1,4 +1,4 @@
-"""Values of a dataset that was read: whether numbers are finite, and whole numbers are numbers of what is there."""
+"""Check the values of a dataset: numbers are finite, and indices exist."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ENDLESS = ("row", "sample")  # axes of what a run that ended in nonsense kept of
 
 
 def checked(path: str, values: np.ndarray, said: Described, sizes: Mapping[str, int]) -> np.ndarray:
-    """The same values. sizes: of all axes. Raises DamagedResults."""
+    """Return the values of a dataset after checking them. sizes: of all axes. Raises DamagedResults."""
     if said.kind == NUMBERS and said.axes[:1] not in [(axis,) for axis in ENDLESS]:
         if not np.isfinite(values).all():
             raise DamagedResults(f"{path} is not finite")
@@ -27,7 +27,7 @@ def checked(path: str, values: np.ndarray, said: Described, sizes: Mapping[str, 
 
 
 def _check_numbers(path: str, values: np.ndarray, said: Described, sizes: Mapping[str, int]) -> None:
-    """Raises DamagedResults where whole numbers are of nothing that is there."""
+    """Raise DamagedResults where whole numbers are indices of nothing that exists."""
     low, high = int(values.min()), int(values.max())
     of = f"of {said.counts} " if said.counts else ""
     starts = said.axes[0].endswith(ONE_MORE)

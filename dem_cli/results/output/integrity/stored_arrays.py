@@ -1,4 +1,4 @@
-"""Arrays of results.h5 against output/layout.py: which are missing, or of another shape or kind than declared.
+"""Check arrays of results.h5 against output/layout.py: missing ones, wrong shape or type.
 
 Only what HDF5 knows without reading values: cheap for any size. What is stored elsewhere (links to other files,
 external storage) and what would fill the memory is refused before anything is read.
@@ -26,10 +26,10 @@ DEM = "/dem"
 
 
 class StoredArrays:
-    """The datasets below /dem, each as it is declared."""
+    """Datasets below /dem, checked against their declaration."""
 
     def __init__(self, file: h5py.File):
-        """Raises DamagedResults where a group, a dataset or an attribute is missing or is not what it must be."""
+        """Check all groups. Raises DamagedResults where a group, a dataset or an attribute is missing or wrong."""
         self.dem = self._dem(file)
         self.dimension = int(self.dem["model"].attrs["dimension"])
         if self.dimension not in (2, 3):
@@ -47,13 +47,13 @@ class StoredArrays:
         return path == DEM or path.removeprefix(f"{DEM}/") in self.dem
 
     def dataset(self, path: str) -> h5py.Dataset:
-        """A dataset by its path, such as /dem/model/masses. Raises DamagedResults: it is missing."""
+        """Return a dataset by its path, such as /dem/model/masses. Raises DamagedResults: it is missing."""
         if path not in self:
             raise DamagedResults(f"{path} is missing")
         return self.dem[path.removeprefix(f"{DEM}/")]
 
     def array(self, path: str, rows: int | None = None) -> np.ndarray:
-        """Its values, of the first rows; text as strings. Raises DamagedResults."""
+        """Read the values of a dataset, of the first rows; text as strings. Raises DamagedResults."""
         data = self.dataset(path)
         try:
             values = data.asstr()[:rows] if data.dtype.kind in KINDS[NAMES] else data[:rows]
@@ -62,19 +62,19 @@ class StoredArrays:
         return self.checked(path, values)
 
     def text(self, path: str) -> str:
-        """The text that a dataset holds. Raises DamagedResults."""
+        """Read the text of a dataset. Raises DamagedResults."""
         try:
             return str(self.dataset(path).asstr()[()])
         except (OSError, UnicodeDecodeError, ValueError, TypeError) as error:
             raise DamagedResults(f"{path} cannot be read ({_reason(error)})") from None
 
     def checked(self, path: str, values: np.ndarray) -> np.ndarray:
-        """Values of a dataset, or of a part of it, where they are what they must be. Raises DamagedResults."""
+        """Check values of a dataset, or of a part of it, and return them. Raises DamagedResults."""
         return checked(path, values, self._said[path], self.sizes) if path in self._said else values
 
     @staticmethod
     def _dem(file: h5py.File) -> h5py.Group:
-        """The group that holds everything, with all groups and attributes that must be there."""
+        """Return the root group after checking its groups and attributes."""
         _check_where(file)
         if not isinstance(file.get("dem"), h5py.Group):
             raise DamagedResults(f"{DEM} is missing")
@@ -89,7 +89,7 @@ class StoredArrays:
         return dem
 
     def _check_group(self, path: str, group: Group) -> None:
-        """All datasets of a group."""
+        """Check all datasets of a group."""
         said = declared(group.datasets, self.dimension)
         inside = self.dem if path == DEM else self.dem[path.removeprefix(f"{DEM}/")]
         if "monitors" in group.attributes:
@@ -106,14 +106,14 @@ class StoredArrays:
             raise DamagedResults(f"{path}/{group.counted_by} is missing")
 
     def _needed(self, path: str, name: str, said: Described, begun: bool) -> bool:
-        """Whether a dataset that is not there has to be."""
+        """Test whether a missing dataset is required."""
         growing = said.axes[0] if said.axes and said.axes[0] in GROWING else ""
         empty = growing and not self.sizes.get(growing, 0)
         no_monitors = said.axes[-1:] == ("monitor",) and not self.sizes["monitor"]
         return begun and not (said.optional or empty or no_monitors)
 
     def _check(self, path: str, data: Any, said: Described) -> None:
-        """Kind and shape of one dataset; sizes of axes that nobody has named before are those of this one."""
+        """Check type and shape of one dataset; it defines the sizes of axes not seen before."""
         if not isinstance(data, h5py.Dataset):
             raise DamagedResults(f"{path} is not a dataset")
         if data.dtype.kind not in KINDS[said.kind]:
@@ -128,7 +128,7 @@ class StoredArrays:
             self.sizes["contact point"] = int(checked(path, data[:], said, self.sizes).sum())
 
     def _size(self, axis: str, said: Described, last: bool, size: int) -> int:
-        """How long an axis is, or has to be at least."""
+        """Return the required length of an axis."""
         if last and said.columns and axis != "mode":
             return len(said.columns)
         more = axis.endswith(ONE_MORE)
@@ -136,10 +136,10 @@ class StoredArrays:
 
 
 class LaterArray:
-    """A dataset of a file that stays open: what is asked of it is read and checked when it is asked for."""
+    """Dataset of an open file that is read and checked on access."""
 
     def __init__(self, arrays: StoredArrays, path: str, folder: Path):
-        """folder: of the results, for messages."""
+        """Open the dataset. folder: of the results, for messages."""
         self._arrays, self._path, self._folder = arrays, path, folder
         self._data = arrays.dataset(path)
         self.shape: tuple[int, ...] = self._data.shape
@@ -148,7 +148,7 @@ class LaterArray:
         return self.shape[0]
 
     def __getitem__(self, rows: int | slice) -> np.ndarray:
-        """Raises DamagedResults."""
+        """Read and check rows. Raises DamagedResults."""
         try:
             return self._arrays.checked(self._path, self._data[rows])
         except DamagedResults as error:
@@ -160,7 +160,7 @@ class LaterArray:
 
 
 def of_hdf5(error: Exception) -> bool:
-    """Whether HDF5 raised it, which says of bytes that are not its own what comes: KeyError, OSError, ValueError, …"""
+    """Test whether HDF5 raised an error: on damaged bytes it raises KeyError, OSError, ValueError, …"""
     trace, module = error.__traceback__, ""
     while trace is not None:
         module, trace = trace.tb_frame.f_globals.get("__name__", ""), trace.tb_next
@@ -168,7 +168,7 @@ def of_hdf5(error: Exception) -> bool:
 
 
 def check_size(file: h5py.File, path: Path) -> None:
-    """Raises DamagedResults where reading a file would take far more memory than the file takes on the disk."""
+    """Raise DamagedResults where reading a file would take far more memory than the file takes on the disk."""
     allowed = max(SMALL_RESULTS, MOST_EXPANSION * path.stat().st_size)
     total = sum(data.nbytes for _, data in _datasets(file))
     if total > allowed:
@@ -186,7 +186,7 @@ def _datasets(group: h5py.Group, above: str = "") -> Iterator[tuple[str, h5py.Da
 
 
 def _check_where(file: h5py.File) -> None:
-    """Raises DamagedResults where something below /dem lies in another file."""
+    """Raise DamagedResults where something below /dem lies in another file."""
     open_groups = [(DEM, file, "dem")]
     seen = 0
     while open_groups:
@@ -205,7 +205,7 @@ def _check_where(file: h5py.File) -> None:
 
 
 def _check_attributes(path: str, group: h5py.Group, said: Group) -> None:
-    """Raises DamagedResults where an attribute is missing, or is not what it must be; any may stand in an open list."""
+    """Raise DamagedResults where an attribute is missing or wrong; an open list may have any attribute."""
     for name in said.attributes if "*" not in said.attributes else ():
         if name not in group.attrs:
             raise DamagedResults(f"{path}: the attribute {name} is missing")

@@ -1,4 +1,4 @@
-"""Keys of summary.json that reports, pictures and answers are made of: which kind of value each has to hold.
+"""Types of the keys of summary.json that reports, pictures and answers are made of.
 
 Keys that are not named here may hold anything. What a table names without a default is missing where it is not there;
 `TOGETHER` names what comes along with a key that has a value.
@@ -27,14 +27,14 @@ KINDS = {  # of errors of pydantic -> what the value is not
 
 
 class SummaryTable(BaseModel):
-    """A table of a summary."""
+    """Table of a summary."""
 
     model_config = ConfigDict(extra="allow", strict=True, defer_build=True)
     TOGETHER: ClassVar[dict[str, tuple[str, ...]]] = {}
 
 
 class FoundPeak(SummaryTable):
-    """peaks.NAME."""
+    """Table peaks.NAME of a summary."""
 
     peak: Maybe
     residual: Maybe
@@ -45,14 +45,14 @@ class FoundPeak(SummaryTable):
 
 
 class FoundMotion(SummaryTable):
-    """moved_far."""
+    """Table moved_far of a summary."""
 
     block: str
     distance: Number
 
 
 class FoundAbove(SummaryTable):
-    """above_the_bound."""
+    """Table above_the_bound of a summary."""
 
     bound: Number
     displacement: Number
@@ -61,21 +61,21 @@ class FoundAbove(SummaryTable):
 
 
 class FoundMovedBound(SummaryTable):
-    """bound_where_it_rests."""
+    """Table bound_where_it_rests of a summary."""
 
     bound: Number
     displacement: Number
 
 
 class FoundValue(SummaryTable):
-    """monitors.NAME."""
+    """Table monitors.NAME of a summary."""
 
     value: Maybe = None
     unit: str | None = None
 
 
 class FoundSpread(SummaryTable):
-    """repeats.peaks.NAME."""
+    """Table repeats.peaks.NAME of a summary."""
 
     median: Number
     p16: Number
@@ -86,7 +86,7 @@ class FoundSpread(SummaryTable):
 
 
 class FoundRepeats(SummaryTable):
-    """repeats, of a time history or of a fragility study."""
+    """Table repeats of a summary, of a time history or of a fragility study."""
 
     peaks: dict[str, FoundSpread | None] | None = None
     runs: Count | None = None
@@ -97,7 +97,7 @@ class FoundRepeats(SummaryTable):
 
 
 class FoundTurn(SummaryTable):
-    """turning_points.N."""
+    """Table turning_points.N of a summary."""
 
     load: Number
     displacement: Number
@@ -106,14 +106,14 @@ class FoundTurn(SummaryTable):
 
 
 class FoundLoad(SummaryTable):
-    """capacity_curve.loads_at.N."""
+    """Table capacity_curve.loads_at.N of a summary."""
 
     load: Maybe
     displacement: Number
 
 
 class FoundSystem(SummaryTable):
-    """capacity_curve.bilinear."""
+    """Table capacity_curve.bilinear of a summary."""
 
     drop: Number
     ductility: Number
@@ -124,7 +124,7 @@ class FoundSystem(SummaryTable):
 
 
 class FoundCurve(SummaryTable):
-    """capacity_curve."""
+    """Table capacity_curve of a summary."""
 
     displacements: list[Number]
     loads: list[Number]
@@ -139,7 +139,7 @@ class FoundCurve(SummaryTable):
 
 
 class FoundCheck(SummaryTable):
-    """check, of a spectrum."""
+    """Table check of a summary: capacity against a response spectrum."""
 
     method: str
     period: Number
@@ -154,14 +154,14 @@ class FoundCheck(SummaryTable):
 
 
 class FoundLoop(SummaryTable):
-    """loops.N."""
+    """Table loops.N of a summary."""
 
     energy: Number
     damping: Number
 
 
 class FoundLimits(SummaryTable):
-    """limit_analysis."""
+    """Table limit_analysis of a summary."""
 
     associated: Maybe = None
     associated_back: Maybe = None
@@ -181,14 +181,14 @@ class FoundLimits(SummaryTable):
 
 
 class FoundCount(SummaryTable):
-    """How many blocks, and the first of them by name."""
+    """Number of blocks with the names of the first, in a summary."""
 
     count: Count
     first: list[Any]
 
 
 class FoundReference(SummaryTable):
-    """reference, or one of several."""
+    """Table reference of a summary, or one of several."""
 
     value: Number | bool | str | list[Number]
     tolerance: Maybe
@@ -204,7 +204,7 @@ class FoundReference(SummaryTable):
 
 
 class FoundRun(SummaryTable):
-    """runs.N, of a safety analysis."""
+    """Table runs.N of a summary of a safety analysis."""
 
     value: Number
     stands: bool | None
@@ -213,7 +213,7 @@ class FoundRun(SummaryTable):
 
 
 class FoundFragility(SummaryTable):
-    """curve, of a fragility study."""
+    """Table curve of a summary of a fragility study."""
 
     intensity: list[Number]
     share: list[Maybe]
@@ -222,7 +222,7 @@ class FoundFragility(SummaryTable):
 
 
 class FoundConfidence(SummaryTable):
-    """confidence, of a fragility study."""
+    """Table confidence of a summary of a fragility study."""
 
     level: Number
     median: Range
@@ -230,7 +230,7 @@ class FoundConfidence(SummaryTable):
 
 
 class FoundGap(SummaryTable):
-    """non_monotone.N, of a fragility study."""
+    """Table non_monotone.N of a summary of a fragility study."""
 
     record: str
     structure: Count
@@ -239,7 +239,7 @@ class FoundGap(SummaryTable):
 
 
 class FoundReach(SummaryTable):
-    """reached, by a run that was interrupted."""
+    """Table reached of a summary of an interrupted run."""
 
     stage: str
     load: Number = 0.0
@@ -248,13 +248,13 @@ class FoundReach(SummaryTable):
 
 
 class FoundHistory(SummaryTable):
-    """histories.N, of a search for a failure load."""
+    """Table histories.N of a summary of a search for a failure load."""
 
     finished: bool
 
 
 class FoundStart(SummaryTable):
-    """start, of a search for a failure load."""
+    """Table start of a summary of a search for a failure load."""
 
     kind: str = ""
     load: Maybe = None
@@ -262,34 +262,34 @@ class FoundStart(SummaryTable):
 
 
 class FoundReweighting(SummaryTable):
-    """reweighting, in space."""
+    """Table reweighting of a summary of a search in space."""
 
     net: Number
     sum: Number
 
 
 class FoundSprings(SummaryTable):
-    """springs, of natural modes."""
+    """Table springs of a summary of a modal analysis."""
 
     pressed: Count
     touching: Count
 
 
 class FoundFirst(SummaryTable):
-    """first_frequency, of natural modes."""
+    """Table first_frequency of a summary of a modal analysis."""
 
     pressed: Maybe
     touching: Maybe
 
 
 class FoundCollapse(SummaryTable):
-    """settlement_at_collapse."""
+    """Table settlement_at_collapse of a summary."""
 
     bracket: Range
 
 
 class RunSummary(SummaryTable):
-    """All of summary.json."""
+    """Complete summary.json."""
 
     TOGETHER = {
         "frequencies": ("total_mass", "effective_masses", "springs", "first_frequency"),
@@ -384,7 +384,7 @@ class RunSummary(SummaryTable):
 
 
 def check_summary(found: Any) -> dict[str, Any]:
-    """The same. Raises DamagedResults where it is no summary of a run."""
+    """Check a summary and return it. Raises DamagedResults where it is no summary of a run."""
     if not isinstance(found, dict):
         raise DamagedResults("summary.json is not a table")
     try:
@@ -399,7 +399,7 @@ def check_summary(found: Any) -> dict[str, Any]:
 
 
 def _words(error: ValidationError, found: Any) -> str:
-    """The first mistake: where it is, and what is wrong."""
+    """Describe the first validation error: its place and what is wrong."""
     first = error.errors(include_url=False, include_input=False, include_context=False)[0]
     path: list[str | int] = []
     for key in first["loc"]:  # pydantic names the choice that it tried as well
@@ -416,7 +416,7 @@ def _words(error: ValidationError, found: Any) -> str:
 
 
 def _check_together(table: SummaryTable, path: tuple[str | int, ...]) -> None:
-    """Raises DamagedResults where a key has a value, and one that comes along with it has none."""
+    """Raise DamagedResults where a key has a value, and its companion has none."""
     for key, others in table.TOGETHER.items():
         for other in others if getattr(table, key) else ():
             if getattr(table, other) is None:

@@ -1,1 +1,1 @@
-"""Files of a run that ParaView and pyvista open: fields of blocks, contacts and joints, as VTKHDF and legacy VTK."""
+"""Write files for ParaView and pyvista: fields of blocks, contacts and joints, as VTKHDF and legacy VTK."""

@@ -19,7 +19,7 @@ _PRISMS = {3: 13, 4: 12, 5: 15, 6: 16}  # wedge, hexahedron, pentagonal and hexa
 
 
 class Cells(NamedTuple):
-    """Convex parts as cells; cell c has the corners[starts[c]:starts[c + 1]]."""
+    """Convex parts as VTK cells; cell c has the corners[starts[c]:starts[c + 1]]."""
 
     types: np.ndarray  # as VTK numbers them, (n_cells,) uint8
     starts: np.ndarray  # (n_cells + 1,) int64
@@ -27,17 +27,17 @@ class Cells(NamedTuple):
 
 
 def polygons(starts: np.ndarray) -> Cells:
-    """Polygons with the corners starts[c]:starts[c + 1] of all points."""
+    """Create polygon cells with the corners starts[c]:starts[c + 1] of all points."""
     return Cells(np.full(len(starts) - 1, _POLYGON, np.uint8), starts.astype(np.int64), np.arange(starts[-1]))
 
 
 def lines(starts: np.ndarray) -> Cells:
-    """Lines through the points starts[c]:starts[c + 1] of all points."""
+    """Create line cells through the points starts[c]:starts[c + 1] of all points."""
     return Cells(np.full(len(starts) - 1, _POLY_LINE, np.uint8), starts.astype(np.int64), np.arange(starts[-1]))
 
 
 def outlines_of_joints(places: JointPlaces) -> Cells:
-    """Joints as they were drawn: in the plane lines, in space polygons, lines and single points."""
+    """Create the cells of joints as drawn: in the plane lines, in space polygons, lines and single points."""
     starts = places.starts if len(places.starts) else 2 * np.arange(len(places.area) + 1)
     types = np.array([_POLYGON, _VERTEX, _LINE], np.uint8)
     counts = np.diff(starts)
@@ -45,7 +45,7 @@ def outlines_of_joints(places: JointPlaces) -> Cells:
 
 
 def cells_of(model: Model) -> Cells:
-    """One cell for each convex part."""
+    """Create one VTK cell for each convex part."""
     if not len(model.face_starts):
         return polygons(model.part_starts)
     topology, firsts = model.topology, model.part_starts
@@ -64,14 +64,14 @@ def cells_of(model: Model) -> Cells:
 
 
 def outlines(model: Model) -> tuple[np.ndarray, np.ndarray]:
-    """Polygons that bound the convex parts: in the plane themselves, in space their faces; starts, and corners."""
+    """Return the polygons that bound the convex parts, in space their faces: starts, and corners."""
     if not len(model.face_starts):
         return model.part_starts, np.arange(len(model.vertices))
     return model.face_starts, model.face_corners
 
 
 def cell(faces: list[np.ndarray], n_corners: int) -> tuple[int, np.ndarray]:
-    """Type of a polyhedron and its corners in the order of that type."""
+    """Return the VTK type of a polyhedron and its corners in the order of that type."""
     for base in faces:
         sides = len(base)
         if n_corners == len(faces) == sides + 1 and sides in _PYRAMIDS:
@@ -86,7 +86,7 @@ def cell(faces: list[np.ndarray], n_corners: int) -> tuple[int, np.ndarray]:
 
 
 def _over(base: np.ndarray, faces: list[np.ndarray]) -> dict[int, int] | None:
-    """The corner of the other end of a prism over each corner of its base; None where a side has not four corners."""
+    """Find the opposite corners of a prism over its base; None where a side has not four corners."""
     found = {}
     edges = set(zip(np.roll(base, -1).tolist(), base.tolist()))  # as the sides run along them
     for face in faces:

@@ -1,4 +1,4 @@
-"""Fields of the files for ParaView (VTKHDF): meaning and units of each, float32 or whole numbers."""
+"""Descriptions of the fields for ParaView (VTKHDF): meaning and units of each, float32 or whole numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fields of blocks, contact points and joints that ParaView shows, as arrays: float32 and whole numbers."""
+"""Fields of blocks, contact points and joints for ParaView, as arrays: float32 and whole numbers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from dem_cli.results.output.paraview.vertices import in_space
 
 
 def block_fields(model: Model) -> dict[str, np.ndarray]:
-    """What ParaView shows on the blocks, the same at all times; a value per convex part."""
+    """Return the constant fields of the blocks for ParaView, a value per convex part."""
     parts = model.part_blocks
     return {
         "block_id": parts.astype(np.int32),
@@ -24,7 +24,7 @@ def block_fields(model: Model) -> dict[str, np.ndarray]:
 
 
 def turning_fields(model: Model, frame: Frame | FrameStack) -> dict[str, np.ndarray]:
-    """How blocks have turned, in space how fast they turn, and their stress; per convex part, frame by frame."""
+    """Return rotation, angular velocity (3D) and stress of the blocks; per convex part, frame by frame."""
     d, copies = model.dimension, len(frame.positions) // model.n_blocks
     parts = numbered_through(model.part_blocks, model.n_blocks, copies)
     found = {"rotation": angles_of(frame.orientations)}
@@ -38,7 +38,7 @@ def turning_fields(model: Model, frame: Frame | FrameStack) -> dict[str, np.ndar
 
 
 def contact_fields(contacts: ContactRecord) -> dict[str, np.ndarray]:
-    """What ParaView shows at the contact points."""
+    """Return the fields of the contact points for ParaView."""
     shear = contacts.shear_force
     return {
         "joint": contacts.joint.astype(np.int32),
@@ -55,19 +55,19 @@ def contact_fields(contacts: ContactRecord) -> dict[str, np.ndarray]:
 
 
 def joint_places(places: JointPlaces) -> dict[str, np.ndarray]:
-    """What ParaView shows on the joints, the same at all times."""
+    """Return the constant fields of the joints for ParaView."""
     blocks = places.blocks.astype(np.int32)
     return {"block_a": blocks[:, 0], "block_b": blocks[:, 1], "area": places.area.astype(np.float32)}
 
 
 def joint_fields(states: JointStates) -> dict[str, np.ndarray]:
-    """What ParaView shows on the joints of one instant."""
+    """Return the fields of the joints at one instant for ParaView."""
     found = {name: values.astype(np.float32) for name, values in states._asdict().items() if name != "state"}
     return found | {"state": states.state.astype(np.uint8)}
 
 
 def step_fields(stack: FrameStack) -> dict[str, np.ndarray]:
-    """Numbers of frames as a whole, (n_frames,) each."""
+    """Return the numbers of whole frames, (n_frames,) each."""
     return {
         "load_multiplier": stack.numbers("load"),
         "control_displacement": stack.numbers("displacement"),

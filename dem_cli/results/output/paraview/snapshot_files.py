@@ -1,4 +1,4 @@
-"""Files that ParaView and pyvista open by name, one step per frame: blocks, contact points, joints, links (.vtkhdf)."""
+"""Write the ParaView files of blocks, contact points, joints and links (.vtkhdf), one step per frame."""
 
 from __future__ import annotations
 
@@ -36,34 +36,34 @@ BLOCKS, CONTACTS, JOINTS, LINKS = VTK_FILES
 
 
 class JointsNow(Protocol):
-    """All joints at one instant, or at several, one behind the other."""
+    """State of all joints at one or several instants."""
 
     @property
     def states(self) -> JointStates:
-        """As results.h5 keeps them."""
+        """Return the joint states as stored in results.h5."""
 
     @property
     def gaps(self) -> np.ndarray:
-        """Distance at both ends [m], (n, 2); in space at the corners, (n_corners,)."""
+        """Return the joint gaps at both ends [m], (n, 2); in space at the corners, (n_corners,)."""
 
     @property
     def ends(self) -> np.ndarray:
-        """Where these are [m], (n, 2, 2); in space (n_corners, 3)."""
+        """Return the positions of the joint ends [m], (n, 2, 2); in space (n_corners, 3)."""
 
 
 class FollowedJoints(Protocol):
-    """The joints of a structure as it was drawn, and what became of them (core/contact/drawn_joints.py)."""
+    """Joints of a structure as drawn, followed through the run (core/contact/drawn_joints.py)."""
 
     @property
     def places(self) -> JointPlaces:
-        """Where they were drawn."""
+        """Positions of the joints as drawn."""
 
     def at(self, positions: np.ndarray, orientations: np.ndarray, contacts: ContactRecord) -> JointsNow:
-        """At one instant, or at those of a FrameStack with its contacts."""
+        """Return the joints at one instant, or at those of a FrameStack with its contacts."""
 
 
 class ParaViewFiles:
-    """The files of a run. opened: makes one by its name; joints, links: None where there are none."""
+    """ParaView files of a run. opened: creates one by its name; joints, links: None where there are none."""
 
     def __init__(
         self,
@@ -86,13 +86,13 @@ class ParaViewFiles:
             self.links = GridSeries(opened(LINKS), lines(links.starts), numbers, declared(LINK_FIELDS | STEP_FIELDS, d))
 
     def write_out(self) -> None:
-        """What waits becomes part of the files."""
+        """Write the buffered rows to the files."""
         for series in (self.blocks, self.points, self.joints, self.links):
             if series is not None:
                 series.write_out()
 
     def add(self, values: np.ndarray, stack: FrameStack, joints: JointsNow | None) -> None:
-        """Append frames; values (n_frames,): what ParaView counts them by."""
+        """Append frames; values (n_frames,): the times or numbers shown by ParaView."""
         model, steps, copies = self.model, step_fields(stack), len(stack.frames)
         vertices = placed_vertices(model, stack.positions, stack.orientations)
         velocities = vertex_velocities(model, vertices, stack.positions, stack.velocities)

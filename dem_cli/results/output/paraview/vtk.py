@@ -1,4 +1,4 @@
-"""VTK export: the blocks of a model for other programs, and .vtu/.vtp + .pvd series for ParaView before 5.12."""
+"""Export to VTK: the blocks of a model for other programs, and .vtu/.vtp + .pvd series for ParaView before 5.12."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _TYPES = {
 
 
 def write_geometry(path: Path, model: Model) -> None:
-    """The undeformed blocks: .vtu, or any other format by its suffix that meshio writes."""
+    """Write the undeformed blocks: .vtu, or any other format of meshio by its suffix."""
     path = Path(path)
     vertices = in_space(rest_vertices(model))
     try:
@@ -46,7 +46,7 @@ def write_geometry(path: Path, model: Model) -> None:
 
 
 def export_pvd(results: Results, folder: Path) -> list[Path]:
-    """Every frame as blocks_0000.vtu and contacts_0000.vtp, with blocks.pvd and contacts.pvd over them.
+    """Write every frame as blocks_0000.vtu and contacts_0000.vtp, with blocks.pvd and contacts.pvd over them.
 
     Raises UsageError where there are no frames, and OutputError; then nothing of it is there.
     """
@@ -154,7 +154,7 @@ def _array(name: str, values: np.ndarray, extra: str) -> str:
 
 
 def times(results: Results) -> list[float]:
-    """What a viewer counts the frames by: seconds in time histories, otherwise their number."""
+    """Return the times of the frames: seconds in time histories, otherwise their number."""
     if kind_of(results.kind).timed:
         return [frame.time for frame in results.frames]
     return [float(i) for i in range(len(results.frames))]

@@ -1,4 +1,4 @@
-"""Time series in the VTKHDF format, to which steps are appended; ParaView opens them (5.12 and later).
+"""Time series in the VTKHDF format, to which steps are appended; ParaView 5.12 and later opens them.
 
 Offsets follow what VTK 9.3 to 9.7 read alike: topology that stays is stored once, equal columns are one
 dataset under several names, and the number of steps is updated last, so that a file cut off between two
@@ -23,7 +23,7 @@ Declared = Mapping[str, Described]  # what fields mean, by their paths: "PointDa
 
 
 class _Series:
-    """What both kinds of series share: the root group, the columns and the bookkeeping of steps."""
+    """Base class of time series in VTKHDF: root group, columns and bookkeeping of steps."""
 
     def __init__(self, file: h5py.File, kind: str, declared: Declared):
         self.root = root = file.create_group("VTKHDF")
@@ -38,12 +38,12 @@ class _Series:
             self.columns.append(f"{kind}/{name}", values)
 
     def _link_offsets(self, kind: str, names: Iterable[str], target: str) -> None:
-        """At the first step: say where the fields of each step start."""
+        """Link the field offsets of each step, at the first step."""
         for name in names if self.n_steps == 0 else ():
             self.columns.link(f"Steps/{kind}Offsets/{name}", target)
 
     def _append_step_fields(self, n: int, fields: Fields) -> None:
-        """One number per step and field, shown by ParaView as field data."""
+        """Append one number per step and field, shown by ParaView as field data."""
         columns = self.columns
         columns.append("Steps/Index", self._numbers(n))
         columns.append("Steps/One", np.ones((n, 2), dtype=np.int64))  # one component, one tuple
@@ -53,7 +53,7 @@ class _Series:
             columns.link(f"Steps/FieldDataSizes/{name}", "Steps/One")
 
     def _numbers(self, n: int) -> np.ndarray:
-        """Numbers of the next n steps."""
+        """Return the numbers of the next n steps."""
         return self.n_steps + np.arange(n)
 
     def _close_steps(self, values: np.ndarray) -> None:
@@ -62,16 +62,16 @@ class _Series:
         self.n_steps += len(values)
 
     def write_out(self) -> None:
-        """What waits becomes part of the file."""
+        """Write the buffered rows to the file."""
         self.columns.write_out()
         self.root["Steps"].attrs["NSteps"] = self.n_steps
 
 
 class GridSeries(_Series):
-    """Blocks as cells whose corners move and whose topology stays (UnstructuredGrid)."""
+    """Time series of block cells whose corners move and whose topology stays (UnstructuredGrid)."""
 
     def __init__(self, file: h5py.File, cells: Cells, fields: Fields, declared: Declared):
-        """fields: of the cells, the same in all steps."""
+        """Create the series. fields: of the cells, the same in all steps."""
         super().__init__(file, "UnstructuredGrid", declared)
         root = self.root
         self.static, self.n_cells = tuple(fields), len(cells.types)
@@ -91,7 +91,7 @@ class GridSeries(_Series):
         cell_fields: Fields,
         step_fields: Fields,
     ) -> None:
-        """Append n steps, values (n,); what they have of points and cells lies one step behind the other.
+        """Append n steps, values (n,); points and cells of the steps are concatenated.
 
         The cell fields of the constructor are the same in all.
         """
@@ -112,7 +112,7 @@ class GridSeries(_Series):
 
 
 class PointSeries(_Series):
-    """Points with fields, a different number at each step (PolyData of vertices)."""
+    """Time series of points with fields, a different number at each step (PolyData of vertices)."""
 
     def __init__(self, file: h5py.File, declared: Declared):
         super().__init__(file, "PolyData", declared)
@@ -127,7 +127,7 @@ class PointSeries(_Series):
     def add(
         self, values: np.ndarray, counts: np.ndarray, points: np.ndarray, point_fields: Fields, step_fields: Fields
     ) -> None:
-        """Append n steps with counts (n,) of the points, which lie one step behind the other, as their fields do.
+        """Append n steps with counts (n,) of points, concatenated with their fields.
 
         All steps share one list of vertices, as long as the longest needs it.
         """

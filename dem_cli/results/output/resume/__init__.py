@@ -1,1 +1,1 @@
-"""What a run keeps while it goes on, for `--resume`: stages and checkpoints of one run, the journal of many."""
+"""Checkpoints and journals that a run keeps for `--resume`."""

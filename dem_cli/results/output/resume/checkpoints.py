@@ -1,7 +1,7 @@
-"""Checkpoints of a run in a hidden folder beside its results: states by name, and what was told to the results so far.
+"""Checkpoints of a run in a hidden folder beside its results: states by name, and the output so far.
 
 It is made with the first checkpoint, minutes into a run, and goes once the results are in place. A state that a kill
-cut short does not exist: it gets its name when it is whole. Of what was told, the last entry that was cut short is
+cut short does not exist: it gets its name when it is whole. Of the reported output, a last entry that was cut short is
 dropped. What is whole and yet not what was written is damaged, and no run goes on from there. Only plain files of the
 folder are opened, as `opened` says: whoever made the folder chooses none elsewhere.
 """
@@ -25,7 +25,7 @@ from dem_cli.results.output.resume.kept_values import NotKept
 from dem_cli.results.output.resume.leftovers import damaged, fits, in_use, opened, parsed, read_at
 
 _FORMAT = 2
-MOST_BYTES = 1 << 31  # of a state, and of an entry of what was told
+MOST_BYTES = 1 << 31  # of a state, and of an entry of reported output
 _MOST_ABOUT = 1 << 20
 _ABOUT, _TOLD, _LOCK = "about.json", "told", ".lock"
 _STATE, _PART = ".state", ".part"
@@ -37,9 +37,9 @@ _NAME = re.compile(r"[0-9]+(-[0-9]+)*\+?")  # of a state
 class Checkpoints:
     """Checkpoints of one run.
 
-    what    gives the facts that must be the same for a run to go on: {words for users: text}; asked for when needed
-    resume  whether what is there is wanted; raises UsageError where it was made of something else, or where there is
-            some and nobody asked for it
+    what    gives the facts that must be the same for a run to go on: {words for users: text}; called when needed
+    resume  whether to go on from existing checkpoints; raises UsageError where they are of another run, or where there
+            are some and resume is False
     """
 
     def __init__(self, folder: Path, name: str, what: Callable[[], Mapping[str, str]], resume: bool):
@@ -66,7 +66,7 @@ class Checkpoints:
             raise
 
     def damaged(self, why: object) -> UsageError:
-        """That no run can go on from here."""
+        """Create the error of a damaged checkpoint."""
         return damaged(self.path, str(why))
 
     def _fit(self, about: Mapping[str, Any], resume: bool) -> bool:
@@ -76,11 +76,11 @@ class Checkpoints:
 
     @property
     def found(self) -> bool:
-        """Whether there are any of before."""
+        """Tell whether there are checkpoints of an earlier run."""
         return self._told is not None
 
     def _read_about(self) -> dict[str, Any] | None:
-        """None where a kill or the disk left nothing to go on from."""
+        """Read the facts of an earlier run; None where a kill or the disk left nothing usable."""
         try:
             about = parsed(self._bytes(_ABOUT, _MOST_ABOUT))
         except OSError:
@@ -97,7 +97,7 @@ class Checkpoints:
         return True
 
     def _ready(self) -> bool:
-        """The folder, made now; False where another run has it."""
+        """Create and lock the folder; False where another run has it."""
         if self._told is None and not self._out_of_use:
             self.path.mkdir(exist_ok=True)
             self._out_of_use = not self._locks()
@@ -106,7 +106,7 @@ class Checkpoints:
     # -- states ------------------------------------------------------------------------------------
 
     def write(self, name: str, data: bytes, seconds: float) -> None:
-        """Keeps a state, in place of one of that name. seconds: of work so far. Raises OutputError and NotKept."""
+        """Write a state, replacing one of that name. seconds: of work so far. Raises OutputError and NotKept."""
         if len(data) > MOST_BYTES:
             raise NotKept(f"a state of {len(data):,} bytes is larger than the {MOST_BYTES:,} that are kept")
         try:
@@ -127,7 +127,7 @@ class Checkpoints:
         part.replace(self.path / name)
 
     def _bytes(self, name: str, most: int) -> bytes:
-        """What a file holds. Raises UsageError where that is more, and OSError."""
+        """Read the bytes of a file. Raises UsageError where there are more than `most`, and OSError."""
         file = opened(self.path / name, os.O_RDONLY)
         try:
             if os.fstat(file).st_size > most:
@@ -137,7 +137,7 @@ class Checkpoints:
             os.close(file)
 
     def read(self, name: str) -> bytes | None:
-        """A state; None where there is none that is whole. Raises UsageError where the disk has changed it."""
+        """Read a state; None where there is no whole one. Raises UsageError where the disk has changed it."""
         if not self.found:
             return None
         try:
@@ -150,7 +150,7 @@ class Checkpoints:
         return self._checked(data)
 
     def _length(self, data: bytes) -> int | None:
-        """Of what follows a header; None where that was cut short. Raises UsageError."""
+        """Return the length of the data after a header; None where it was cut short. Raises UsageError."""
         if len(data) < _HEADER:
             return None
         length, _ = _SIZES.unpack_from(data)
@@ -159,7 +159,7 @@ class Checkpoints:
         return int(length)
 
     def _checked(self, data: bytes) -> bytes:
-        """What follows its header. Raises UsageError."""
+        """Return the data after its header, with its checksum verified. Raises UsageError."""
         length, checksum = _SIZES.unpack_from(data)
         found = data[_HEADER:]
         if len(found) != length or zlib.crc32(found) != checksum:
@@ -167,20 +167,20 @@ class Checkpoints:
         return found
 
     def names(self) -> list[str]:
-        """Of all states."""
+        """List the names of all states."""
         if not self.found:
             return []
         names = (path.name.removesuffix(_STATE) for path in self.path.glob(f"*{_STATE}"))
         return [name for name in names if _NAME.fullmatch(name)]
 
     def drop(self, name: str) -> None:
-        """A state that nobody needs any more."""
+        """Delete a state that is no longer needed."""
         (self.path / (name + _STATE)).unlink(missing_ok=True)
 
-    # -- what was told -----------------------------------------------------------------------------
+    # -- reported output ----------------------------------------------------------------------------
 
     def tell(self, entries: list[bytes]) -> list[tuple[int, int]]:
-        """Appends what was told to the results: where each entry begins and ends. Raises OutputError."""
+        """Append output records; returns where each entry begins and ends. Raises OutputError."""
         places: list[tuple[int, int]] = []
         try:
             if not entries or not self._ready():
@@ -197,7 +197,7 @@ class Checkpoints:
         return places
 
     def told(self) -> list[tuple[int, int]]:
-        """Where each whole entry begins and ends; what a kill cut short behind them is taken off. Raises UsageError."""
+        """Return where each whole output record begins and ends, and cut off an incomplete one. Raises UsageError."""
         if self._told is None:
             return []
         places, at, size = [], 0, os.fstat(self._told).st_size
@@ -210,13 +210,13 @@ class Checkpoints:
         return self.only(places)
 
     def only(self, places: list[tuple[int, int]]) -> list[tuple[int, int]]:
-        """Forgets what was told behind these places."""
+        """Discard the output records after these places."""
         assert self._told is not None
         os.ftruncate(self._told, places[-1][1] if places else 0)
         return places
 
     def told_at(self, places: list[tuple[int, int]]) -> Iterator[bytes]:
-        """The entries at these places, one after the other. Raises UsageError where the disk has changed them."""
+        """Yield the output records at these places. Raises UsageError where the disk has changed them."""
         assert self._told is not None
         for begin, end in places:
             yield self._checked(read_at(self._told, begin, end - begin))
@@ -224,21 +224,21 @@ class Checkpoints:
     # -- the end -----------------------------------------------------------------------------------
 
     def close(self) -> None:
-        """Leaves them for `--resume`."""
+        """Close the files and leave them for `--resume`."""
         for handle in (self._told, self._lock):
             if handle is not None:
                 os.close(handle)
         self._told = self._lock = None
 
     def remove(self) -> None:
-        """The results are in place, or what is there is not wanted."""
+        """Remove the checkpoints once the results are in place, or they are not wanted."""
         if self._told is not None:
             self.close()
             shutil.rmtree(self.path, ignore_errors=True)
 
 
 def _header(data: bytes) -> bytes:
-    """What says how long data is, and what it is."""
+    """Create the header of data: its length and checksum."""
     sizes = _SIZES.pack(len(data), zlib.crc32(data))
     return sizes + _CHECK.pack(zlib.crc32(sizes))
 

@@ -1,4 +1,4 @@
-"""Journal of the finished runs of an analysis of many, one per line as they come: what `--resume` goes on from.
+"""Journal of the finished runs of an analysis of many, one per line, from which `--resume` continues.
 
 The file lies beside the output folder and goes once the results are in place. Its first line says what was run; a last
 line that a kill cut short is dropped, and so is one whose checksum says that the disk has changed it.
@@ -25,11 +25,11 @@ Values = tuple[Any, ...]
 
 
 class Journal:
-    """Journal of finished runs: `known()` are those of before; `add` keeps one more.
+    """Journal of finished runs: `known()` are earlier ones; `add` stores one more.
 
     what    facts that must be the same for runs to be comparable: {words for users: text}
-    resume  whether runs of before are wanted; raises UsageError where they were made of something else,
-            or where there are some and nobody asked for them
+    resume  whether to go on from earlier runs; raises UsageError where they belong to something else, or where there
+            are some and resume is False
     of      classes of a key and of values, whose fields say what they take; None: anything
     """
 
@@ -54,7 +54,7 @@ class Journal:
             raise
 
     def _start(self, resume: bool) -> None:
-        """Take over what is there, or begin."""
+        """Take over an existing journal, or begin one."""
         if os.fstat(self._file).st_size > _MOST_BYTES:
             raise damaged(self.path, "it is too large")
         lines = read_at(self._file, 0, _MOST_BYTES).split(b"\n")
@@ -89,17 +89,17 @@ class Journal:
         self._write({"format": JOURNAL_FORMAT, "what": self.what})
 
     def known(self) -> Mapping[Key, Values]:
-        """Runs that were finished before."""
+        """Return the runs that were finished before."""
         return self._known
 
     def add(self, key: Sequence[Any], values: Sequence[Any]) -> None:
-        """Keep a run; a kill does not lose it. Raises OutputError."""
+        """Store a run so that it survives a kill. Raises OutputError."""
         self._write([key, values, _checksum(key, values)])
         self._added += 1
 
     @property
     def count(self) -> int:
-        """How many runs it keeps."""
+        """Number of stored runs."""
         return len(self._known) + self._added
 
     def _write(self, row: Any) -> None:
@@ -111,7 +111,7 @@ class Journal:
             raise write_error(error, self.path) from None
 
     def close(self) -> None:
-        """Leave it for `--resume`; nothing stays of one without runs."""
+        """Close the journal for `--resume`; one without runs is deleted."""
         if self._file >= 0:
             if self._ours and not self.count:
                 self.path.unlink(missing_ok=True)
@@ -119,7 +119,7 @@ class Journal:
             self._file = -1
 
     def remove(self) -> None:
-        """The results are in place."""
+        """Delete the journal once the results are in place."""
         self.path.unlink(missing_ok=True)
 
     def __enter__(self) -> Journal:
@@ -130,7 +130,7 @@ class Journal:
 
 
 def _row(line: bytes) -> tuple[Key, Values] | None:
-    """Key and values of a line; None where it is not what was written."""
+    """Parse key and values of a line; None where it is damaged."""
     found = parsed(line)
     if not isinstance(found, list) or len(found) != 3 or _checksum(*found[:2]) != found[2]:
         return None
@@ -143,5 +143,5 @@ def _checksum(key: Any, values: Any) -> int:
 
 
 def _tuples(value: Any) -> Any:
-    """Lists, as JSON has them, as tuples."""
+    """Convert the lists of JSON to tuples."""
     return tuple(map(_tuples, value)) if isinstance(value, list) else value

@@ -1,4 +1,4 @@
-"""Objects of a run as bytes and back, for checkpoints: what changes of them, while what lasts is only named.
+"""Serialise objects of a run for checkpoints: their changing attributes, while lasting ones are only named.
 
 A class of things that change while a solver works says in LASTING which of its attributes stay the objects that they
 are: the model of a simulation, the simulation of a track. Everything else of it is kept, so that a new attribute cannot
@@ -19,13 +19,13 @@ _known: dict[type, bool] = {}  # which classes change
 
 
 class Changing(Protocol):
-    """What changes while a solver works."""
+    """Protocol of objects that change while a solver works."""
 
     LASTING: frozenset[str]  # attributes that stay the objects that they are
 
 
 def _changes(one: Any) -> bool:
-    """Whether it is `Changing`; Python takes 30 µs to say so of a protocol."""
+    """Test whether an object is `Changing`, faster than the 30 µs that a protocol takes."""
     kind = type(one)
     if kind not in _known:
         _known[kind] = hasattr(kind, "LASTING")
@@ -33,7 +33,7 @@ def _changes(one: Any) -> bool:
 
 
 def all_changing(objects: Iterable[Any]) -> list[Changing]:
-    """Those of some objects that change, and those that they lead to by what lasts of them; each once, in order."""
+    """Collect the changing objects, also those reached through lasting attributes; each once, in order."""
     found: dict[int, Changing] = {}
     waiting = list(objects)
     while waiting:
@@ -45,13 +45,13 @@ def all_changing(objects: Iterable[Any]) -> list[Changing]:
 
 
 def encoded(changing: list[Changing], more: Any) -> bytes:
-    """What changes of some objects, and more data that may refer to them. Raises NotKept."""
+    """Serialise the changing attributes of objects, with data that may refer to them. Raises NotKept."""
     names = {id(value): name for name, value in _names(changing).items()}
     return packed(([_state(one) for one in changing], more), names)
 
 
 def decoded(data: bytes, changing: list[Changing]) -> Any:
-    """Puts back what `encoded` kept of the same objects, and gives the other data. Raises Damaged.
+    """Restore what `encoded` stored of the same objects, and return the other data. Raises Damaged.
 
     Objects that have a `guard_of_kept` look at what came back to them, and at records that have a geometry.
     """
@@ -77,7 +77,7 @@ def decoded(data: bytes, changing: list[Changing]) -> Any:
 
 
 def _accepted(record: Any, guards: list[Callable[[Any], None]]) -> None:
-    """Raises ValueError where a record is of none of several scenes."""
+    """Raise ValueError where a record fits none of several scenes."""
     for guard in guards[:-1]:
         with suppress(ValueError):
             return guard(record)
@@ -85,7 +85,7 @@ def _accepted(record: Any, guards: list[Callable[[Any], None]]) -> None:
 
 
 def check_like(one: Any, state: Any) -> None:
-    """Raises Damaged where a kept state is not that of such an object."""
+    """Raise Damaged where a stored state does not belong to such an object."""
     if type(state) is not dict:
         raise Damaged(f"no state of {type(one).__name__}")
     lasting: frozenset[str] = getattr(one, "LASTING", frozenset())
@@ -98,7 +98,7 @@ def check_like(one: Any, state: Any) -> None:
 
 
 def put_back(one: Any, state: Mapping[str, Any]) -> None:
-    """Gives an object the attributes of a kept state; those that it got since go."""
+    """Restore the attributes of a stored state; later ones are removed."""
     here = vars(one)
     for name in here.keys() - state.keys() - getattr(one, "LASTING", frozenset()):
         del here[name]
@@ -115,7 +115,7 @@ def _lasting(one: Changing) -> Iterator[tuple[str, Any]]:
 
 
 def _names(changing: list[Changing]) -> dict[str, Any]:
-    """Everything that is named instead of kept."""
+    """Return everything that is named instead of stored."""
     found: dict[str, Any] = {}
     for number, one in enumerate(changing):
         found[str(number)] = one

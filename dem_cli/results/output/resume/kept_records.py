@@ -1,4 +1,4 @@
-"""Records that may stand in a checkpoint: the classes, by the names that they have there, and what their fields take.
+"""Record classes allowed in a checkpoint, by name, and the types of their fields.
 
 A class that is not named here is neither kept nor made. One is made without a call of it, from fields that are looked
 at first. Its module is imported when a checkpoint holds one: names alone point from here to where the solvers are.
@@ -71,20 +71,20 @@ _TAKES: dict[str, tuple[type, ...]] = {  # by the word of an annotation; any oth
 
 
 class Field(NamedTuple):
-    """What a field takes."""
+    """Types that a field accepts."""
 
     kinds: tuple[type, ...]
     items: tuple[type, ...] | None  # of which all items of a list or a tuple are; None: anything
 
     def takes(self, value: Any) -> bool:
-        """Whether it takes a value."""
+        """Test whether the field accepts a value."""
         if self.items is not None and isinstance(value, (tuple, list)):
             return isinstance(value, self.kinds) and all(isinstance(each, self.items) for each in value)
         return isinstance(value, self.kinds)
 
 
 def unfit(of: type, fields: Mapping[Any, Any]) -> str | None:
-    """What is wrong with the fields of such a record; None: nothing."""
+    """Describe what is wrong with the fields of a record; None: nothing."""
     annotated = _annotated(of)
     for name, value in fields.items():
         if not isinstance(name, str) or callable(getattr(of, name, None)) or name.startswith("__"):
@@ -97,7 +97,7 @@ def unfit(of: type, fields: Mapping[Any, Any]) -> str | None:
 
 @cache
 def _annotated(of: type) -> dict[str, Field]:
-    """Annotated fields of a class and its bases, but for those of which it is not known what they take."""
+    """Return the annotated fields of a class and its bases whose types are known."""
     found = {}
     for base in reversed(of.__mro__):
         for name, annotation in vars(base).get("__annotations__", {}).items():
@@ -109,12 +109,12 @@ def _annotated(of: type) -> dict[str, Field]:
 
 
 def _kinds(word: str) -> tuple[type, ...]:
-    """Classes that a word of an annotation takes; none where that is not known."""
+    """Return the classes that a word of an annotation means; none where that is not known."""
     name = word.partition("[")[0].strip()
     return _TAKES.get(name) or ((RECORDS[name],) if name in RECORDS else ())
 
 
 def _items(annotation: str) -> tuple[type, ...] | None:
-    """Of which the items of a plain list or tuple are: list[float], tuple[str, ...]."""
+    """Return the item types of a plain list or tuple: list[float], tuple[str, ...]."""
     found = re.fullmatch(r"(?:list\[|tuple\[)([\w.]+)(?:, \.\.\.)?\]", annotation)
     return (_kinds(found[1]) or None) if found else None

@@ -1,4 +1,4 @@
-"""Values of a run as bytes and back, for checkpoints: JSON, and behind it the numbers of the arrays that it names.
+"""Serialise values of a run for checkpoints: JSON, followed by the numbers of its arrays.
 
 What is read is data. A value is made as its kind says, a record of a class that kept_records.py names without a call
 of it; nothing in the bytes says what to run, and nothing is made that is larger than they are. What is the same object
@@ -33,15 +33,15 @@ _KINDS = {kind: kind.__name__ for kind in (list, tuple, set, frozenset)}
 
 
 class NotKept(TypeError):
-    """A value of a run that no checkpoint can hold."""
+    """Error of a value of a run that no checkpoint can hold."""
 
 
 class Damaged(ValueError):
-    """Bytes that are not what a checkpoint holds."""
+    """Error of bytes that are no valid checkpoint."""
 
 
 def packed(value: Any, names: Mapping[int, str] | None = None) -> bytes:
-    """A value as bytes. names: of objects that are only named, by their id. Raises NotKept."""
+    """Serialise a value. names: of objects that are only named, by their id. Raises NotKept."""
     packing = _Packing(names or {})
     text = json.dumps(packing.node(value, 0), ensure_ascii=False, separators=(",", ":")).encode(
         "utf-8", "surrogatepass"
@@ -54,7 +54,7 @@ def packed(value: Any, names: Mapping[int, str] | None = None) -> bytes:
 def unpacked(
     data: bytes, named: Mapping[str, Any] | None = None, see: Callable[[Any], None] = lambda record: None
 ) -> Any:
-    """The value that `packed` made bytes of. Raises Damaged.
+    """Restore a value serialised by `packed`. Raises Damaged.
 
     named: objects by the names that they had; see: is shown each record that is made.
     """
@@ -78,7 +78,7 @@ def _no_number(word: str) -> float:
 
 
 class _Packing:
-    """One value on its way to bytes."""
+    """Serialisation of one value."""
 
     def __init__(self, names: Mapping[int, str]):
         self.names, self.numbers = names, list[bytes]()
@@ -86,7 +86,7 @@ class _Packing:
         self._objects: list[Any] = []  # so that no other gets the id of one
 
     def node(self, value: Any, depth: int) -> Any:
-        """What stands for a value in the JSON."""
+        """Convert a value to its JSON form."""
         kind = type(value)
         if kind in _PLAIN:
             return value
@@ -131,14 +131,14 @@ class _Packing:
 
 
 class _Unpacking:
-    """Bytes on their way to a value."""
+    """Deserialisation of one value."""
 
     def __init__(self, numbers: memoryview, named: Mapping[str, Any], see: Callable[[Any], None]):
         self.numbers, self.named, self.see, self.at = numbers, named, see, 0
         self._objects: list[Any] = []
 
     def value(self, node: Any, depth: int) -> Any:
-        """What a part of the JSON stands for."""
+        """Convert a part of the JSON to its value."""
         if type(node) is not list:
             if type(node) is dict:
                 raise Damaged("a value of no kind")
@@ -211,7 +211,7 @@ class _Unpacking:
         return found
 
     def _taken(self, length: int) -> memoryview:
-        """The next so many bytes of what is behind the JSON."""
+        """Take the next bytes of the data behind the JSON."""
         begin, self.at = self.at, self.at + length
         if self.at > len(self.numbers):
             raise Damaged("more numbers are named than there are")

@@ -1,4 +1,4 @@
-"""Leftovers of an interrupted run: how they are opened, whether the run that finds them may go on, the words where not.
+"""Leftovers of an interrupted run: opening them safely, and deciding whether a run may resume from them.
 
 Who made them is not known: they are read as data, and only as plain files where they lie.
 """
@@ -20,7 +20,7 @@ _AS_IT_IS = getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0) | getattr(
 
 
 def opened(path: Path, flags: int) -> int:
-    """A plain file, by the flags of `os.open`; never what a link leads to, nor a pipe that nobody writes.
+    """Open a plain file by the flags of `os.open`; never the target of a link, nor a pipe without a writer.
 
     Raises UsageError where it is something else, and OSError.
     """
@@ -37,7 +37,7 @@ def opened(path: Path, flags: int) -> int:
 
 
 def read_at(file: int, begin: int, length: int) -> bytes:
-    """So many bytes of a file from a place on; fewer where it ends before."""
+    """Read bytes of a file from a position on; fewer where it ends before."""
     os.lseek(file, begin, os.SEEK_SET)
     parts = []
     while length > 0 and (part := os.read(file, min(length, 1 << 26))):
@@ -47,7 +47,7 @@ def read_at(file: int, begin: int, length: int) -> bytes:
 
 
 def parsed(text: bytes) -> Any:
-    """What a text of JSON says; None where it is none."""
+    """Parse JSON; None where the text is none."""
     try:
         return json.loads(text)
     except (ValueError, RecursionError):
@@ -55,14 +55,14 @@ def parsed(text: bytes) -> Any:
 
 
 def damaged(path: Path, why: str) -> UsageError:
-    """That nobody can go on from what is there."""
+    """Create the error of damaged leftovers, from which no run can resume."""
     return UsageError(f"{path}: is damaged; delete it to start anew ({why})")
 
 
 def fits(
     header: Mapping[str, Any], form: int, what: Mapping[str, str], resume: bool, left: str | None, path: Path
 ) -> bool:
-    """Whether they are of the same case and program, and wanted; False: begin anew.
+    """Test whether leftovers fit the case and program, and are wanted; False: begin anew.
 
     header: {"format": number, "what": facts} of the leftovers; form, what: of the run that finds them; left: how much
     there is, None: nothing. Raises UsageError where they are wanted and do not fit, and where they fit unasked.
@@ -84,7 +84,7 @@ def fits(
 
 
 def in_use(final: Path) -> UsageError:
-    """That another run is about to write there."""
+    """Create the error of a folder that another run is about to write to."""
     return UsageError(
         f"{final}: another run is writing its results there; wait for its end, or choose another folder with -o"
     )

@@ -1,4 +1,4 @@
-"""Keeper of the stages of a run (core/records/ports.py) in a folder, for `--resume`: checkpoints, and what was told."""
+"""Stages of a run (core/records/ports.py) stored in a folder for `--resume`: checkpoints, and the output so far."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _UNDER_WAY, _INSIDE = "+", "-"  # in names: a checkpoint of a stage; a stage ins
 
 
 class Keeping(NamedTuple):
-    """What is kept of a run."""
+    """Time limits that decide which stages and checkpoints are stored."""
 
     first: float = 20.0  # s of a run of which nothing is kept: it is done again
     every: float = 60.0  # s of work that a kill may cost
@@ -33,36 +33,36 @@ DEFAULT_KEEPING = Keeping()
 
 
 class _UnderWay:
-    """A stage under way, and those inside of it so far."""
+    """Running stage, and its number of inner stages so far."""
 
     def __init__(self, name: str, key: str, changing: list[Changing], now: float):
         self.name, self.key, self.changing, self.begun, self.kept = name, key, changing, now, now
         self.inside = 0
 
     def next(self) -> str:
-        """Key of the next stage inside."""
+        """Return the key of the next inner stage."""
         self.inside += 1
         return self.key + f"{_INSIDE}{self.inside}" * bool(self.key) or str(self.inside)
 
 
 class _Outcome(NamedTuple):
-    """Of a finished stage."""
+    """Stored outcome of a finished stage."""
 
     found: Any
     gave_up: str | None = None  # with a SolverError
 
 
 class _Checkpoint(NamedTuple):
-    """Of a stage under way."""
+    """Stored checkpoint of a running stage."""
 
-    inside: int  # stages inside so far, which nobody asks for again
+    inside: int  # stages inside so far, which are not needed again
     loop: dict[str, Any]
 
 
 class KeptStages(Stages):
-    """Stages of a run, kept in a folder.
+    """Stages of a run, stored in a folder.
 
-    tell: hands what was told before on to the results; raises Damaged where nobody tells them such a thing.
+    tell: hands output of the earlier run on to the results; raises Damaged where it is of no known kind.
     """
 
     def __init__(self, kept: Checkpoints, tell: Callable[[str, Any], None], keeping: Keeping = DEFAULT_KEEPING) -> None:
@@ -77,39 +77,39 @@ class KeptStages(Stages):
         self._places = kept.told()  # of what was told, where it is kept
         self._names = set(kept.names())
         self._told = 0  # so far, by this run
-        self._waiting: list[tuple[str, Any]] = []  # told, and not kept yet
+        self._waiting: list[tuple[str, Any]] = []  # reported, and not stored yet
         self._cost = 0.01  # s of keeping a stage
         self.before = kept.seconds
         self._open = [_UnderWay("", "", [], self._begun)]
 
-    # -- what is told ------------------------------------------------------------------------------
+    # -- reported output ----------------------------------------------------------------------------
 
     def note(self, kind: str, record: Any) -> None:
-        """Something was told to the results."""
+        """Record output of the run."""
         self._told += 1
         if not self._over and self._told > len(self._places) + len(self._waiting):
             self._waiting.append((kind, record))
 
     def _tell_again(self, until: int) -> None:
-        """What a stage told that is not done again."""
+        """Replay the output of a stage that is not repeated."""
         if until < self._told:
-            raise self.kept.damaged("more was told before")
+            raise self.kept.damaged("the run reported more before")
         for data in self.kept.told_at(self._places[self._told : until]):
             told = self._decoded(data, [], tuple)
             if [type(each) for each in told[:1]] != [str] or len(told[1:]) != 1:
-                raise self.kept.damaged("something was told of no kind")
+                raise self.kept.damaged("output of an unknown kind")
             self._unless_damaged(partial(self.tell, *told))
         self._told = until
 
     def _decoded(self, data: bytes, changing: list[Changing], kind: type[Any]) -> Any:
-        """As `decoded`, of such a kind. Raises UsageError where it is no data, or of another one."""
+        """Decode stored data of a type. Raises UsageError where it is damaged, or of another type."""
         found = self._unless_damaged(lambda: decoded(data, changing))
         if type(found) is not kind:
             raise self.kept.damaged(f"a {kind.__name__} is missing")
         return found
 
     def _unless_damaged(self, work: Callable[[], Found]) -> Found:
-        """What work gives. Raises UsageError where it finds that what is kept is no such thing."""
+        """Call a function and convert Damaged to UsageError."""
         try:
             return work()
         except Damaged as error:
@@ -118,7 +118,7 @@ class KeptStages(Stages):
     # -- stages ------------------------------------------------------------------------------------
 
     def done(self, name: str, arguments: tuple[Any, ...], work: Callable[[], Found]) -> Found:
-        """As Stages. Raises SolverError where the work did."""
+        """Run a stage, or return its stored outcome (see Stages). Raises SolverError where the work did."""
         key, changing = self._open[-1].next(), all_changing(arguments)
         under_way = _UnderWay(_in_full(name, arguments, changing), key, changing, self._now())
         known = self._read(key, under_way, _Outcome)
@@ -153,7 +153,7 @@ class KeptStages(Stages):
             self._drop(inside)
 
     def resumed(self, loop: Any = None) -> bool:
-        """As Stages."""
+        """Restore the last checkpoint of the running stage (see Stages)."""
         under_way = self._open[-1]
         known = self._read(under_way.key + _UNDER_WAY, under_way, _Checkpoint)
         if known is None:
@@ -165,7 +165,7 @@ class KeptStages(Stages):
         return True
 
     def offer(self, loop: Any = None) -> None:
-        """As Stages."""
+        """Store a checkpoint of the running stage if it is time (see Stages)."""
         under_way, now = self._open[-1], self._now()
         if now >= self._say_next:
             self._say_next = now + _SAY_EVERY
@@ -181,7 +181,7 @@ class KeptStages(Stages):
     # -- what is kept ------------------------------------------------------------------------------
 
     def _write(self, name: str, under_way: _UnderWay, what: _Outcome | _Checkpoint) -> bool:
-        """Keeps a stage or a checkpoint, with all that was told; not after an interrupt, of which it may be the end."""
+        """Store a stage or a checkpoint with all output so far; not after an interrupt."""
         if asked() or self._over:
             return False
         begun = self._now()
@@ -202,7 +202,7 @@ class KeptStages(Stages):
         return True
 
     def _read(self, name: str, under_way: _UnderWay, kind: type[Any]) -> Any:
-        """A kept stage or checkpoint, put back; None where there is none. Raises UsageError."""
+        """Restore a stored stage or checkpoint; None where there is none. Raises UsageError."""
         data = self.kept.read(name) if name in self._names else None
         if data is None:
             return None
@@ -226,7 +226,7 @@ class KeptStages(Stages):
 
 
 def _in_full(name: str, arguments: tuple[Any, ...], changing: list[Changing]) -> str:
-    """The name of a stage with its numbers, and with how many steps were done before: another way has others."""
+    """Return the full name of a stage with its numbers, and the number of steps done before."""
     numbers = [repr(each) for each in arguments if isinstance(each, (int, float, str))]
     steps = [str(one.steps) for one in changing if hasattr(one, "steps")]
     return f"{name}({', '.join(numbers)}) after {', '.join(steps)} steps"

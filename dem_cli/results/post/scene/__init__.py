@@ -1,1 +1,1 @@
-"""Structures in pictures of matplotlib: polygons in the plane, solids in space seen from the side that moves."""
+"""Draw structures with matplotlib: polygons in the plane, solids in space seen from the side that moves."""

@@ -16,11 +16,11 @@ from dem_cli.results.output.paraview.vertices import rest_vertices
 
 AZIMUTH_ASIDE, ELEVATION = 32.0, 22.0  # degrees: from the middle of the wide side, and above the ground
 _STILL = 1e-12  # of the size of the structure: who moves less does not move
-_STRAIGHT = 0.05  # of the motion: one so small to a side is none
+_STRAIGHT = 0.05  # of the motion: a smaller one to a side is neglected
 
 
 class Standpoint(NamedTuple):
-    """Standpoint that a user asks for."""
+    """Viewpoint requested by a user."""
 
     view: str | None = None  # "front" or "3d"; None: front in the plane, 3d in space
     azimuth: float | None = None  # in space, from x towards y [deg]; None: as it is best
@@ -38,16 +38,18 @@ class Axonometry(NamedTuple):
     eye: np.ndarray  # from the structure to the reader, (3,)
 
     def placed(self, points: np.ndarray) -> np.ndarray:
-        """Points in space as the picture has them: to the right, upwards, towards the reader [m], (n, 3)."""
+        """Project points to picture coordinates: right, up, towards the viewer [m], (n, 3)."""
         return points @ np.stack(self).T
 
     def flat(self, points: np.ndarray) -> np.ndarray:
-        """Points in space on the picture [m], (n, 2)."""
+        """Project points in space to the picture plane [m], (n, 2)."""
         return points @ np.stack(self[:2]).T
 
 
 def seen_from(azimuth: float, elevation: float) -> Axonometry:
-    """Azimuth of the reader in degrees from x towards y, and elevation above the horizontal; z is upwards."""
+    """Create the view from an azimuth in degrees from x towards y, and an elevation above the horizontal; z is
+    upwards.
+    """
     turn, rise = np.radians(azimuth), np.radians(elevation)
     eye = np.array([np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)])
     right = np.array([-np.sin(turn), np.cos(turn), 0.0])
@@ -55,21 +57,21 @@ def seen_from(azimuth: float, elevation: float) -> Axonometry:
 
 
 def wide_side(model: Model) -> np.ndarray:
-    """Along the wider side of the box around the blocks that can move: x or y, unit, (2,)."""
+    """Return the direction of the wider side of the box around the movable blocks: x or y, unit, (2,)."""
     free = ~model.fixed if not model.fixed.all() else model.fixed
     extents = np.ptp(rest_vertices(model)[free[model.vertex_blocks], :2], axis=0)
     return np.eye(2)[int(extents[1] > extents[0])]
 
 
 def looks_right(model: Model, view: Axonometry) -> float:
-    """1 where the wide side that is seen looks to the right of the reader, −1 where it looks to the left."""
+    """Return 1 where the visible wide side faces the right of the viewer, −1 where it faces the left."""
     along = wide_side(model)
     normal = np.array([-along[1], along[0], 0.0])
     return float(np.sign(normal @ view.eye) * np.sign(normal @ view.right) or -1.0)
 
 
 def azimuth_of(model: Model, frame: Frame | None, aside: float = AZIMUTH_ASIDE) -> float:
-    """Azimuth in degrees from which most is seen: of the wide side, from where the blocks move to in this frame.
+    """Choose the azimuth in degrees that shows most: of the wide side, towards which the blocks move in this frame.
 
     aside: from the middle of that side [deg].
     """
@@ -88,7 +90,7 @@ def azimuth_of(model: Model, frame: Frame | None, aside: float = AZIMUTH_ASIDE) 
 
 
 def axonometry(model: Model, frame: Frame | None, asked: Standpoint = AS_BEST) -> Axonometry:
-    """The view of a structure in space; frame: whose motion the reader should see best."""
+    """Create the view of a structure in space; frame: whose motion should be seen best."""
     oblique, (_, azimuth, elevation) = asked.view != "front", asked
     if azimuth is None:
         azimuth = azimuth_of(model, frame, AZIMUTH_ASIDE if oblique else 0.0)
@@ -98,6 +100,6 @@ def axonometry(model: Model, frame: Frame | None, asked: Standpoint = AS_BEST) -
 
 
 def refuse_in_plane(asked: Standpoint) -> None:
-    """UsageError for an azimuth or an elevation of a structure in the plane."""
+    """Raise UsageError for an azimuth or an elevation of a structure in the plane."""
     if asked.azimuth is not None or asked.elevation is not None:
         raise UsageError("--azimuth and --elevation are for structures in space; this one lies in the plane")

@@ -1,4 +1,4 @@
-"""Drawing of a structure by its dimension: what pictures ask for, in the plane and in space alike."""
+"""Drawing interface of a structure, the same in two and three dimensions."""
 
 from __future__ import annotations
 
@@ -15,35 +15,35 @@ from dem_cli.results.post.scene.space_drawing import SpaceDrawing
 
 
 class Drawing(Protocol):
-    """The structure in a picture of matplotlib."""
+    """Drawing of a structure with matplotlib."""
 
     legend: tuple[str, ...]
     lights: tuple[float, ...]
     force_width: float
 
     def flat(self, points: np.ndarray) -> np.ndarray:
-        """Where points (n, d) are in the picture [m], (n, 2)."""
+        """Project points (n, d) to the picture plane [m], (n, 2)."""
 
     def window(self, corners: Sequence[np.ndarray], low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The part of the picture that shows these corners as far as they are in a box [m], (d,)."""
+        """Return the limits of the picture that show these corners as far as they are in a box [m], (d,)."""
 
     def draw_blocks(self, axis: Any, low: np.ndarray, high: np.ndarray) -> Callable[[np.ndarray], None]:
-        """The blocks in a window; returns what puts their corners (n_vertices, d) in place."""
+        """Draw the blocks in a window; returns a function that moves their corners (n_vertices, d)."""
 
     def draw_supports(self, axis: Any, colour: str) -> None:
-        """Hatches over blocks that cannot move, where they stood at the start."""
+        """Draw hatches over fixed blocks, in their initial places."""
 
     def draw_rest(self, axis: Any, low: np.ndarray, high: np.ndarray) -> None:
-        """Outlines of the start."""
+        """Draw outlines of the initial geometry."""
 
     def draw_joints(self, axis: Any, frame: Frame, hairline: float) -> None:
-        """Joints by state, over blocks that are in place."""
+        """Draw joints by state, over the displaced blocks."""
 
     def draw_links(self, axis: Any, frame: Frame) -> None:
-        """Ties and bars as lines over the blocks, as dark as the force in them."""
+        """Draw ties and bars as lines over the blocks, as dark as their force."""
 
     def finish(self, axis: Any) -> None:
-        """Directions of the axes where they are not plain, over a picture whose limits are set."""
+        """Draw the directions of the axes where needed, over a picture whose limits are set."""
 
 
 def _in_plane(model: Model, frame: Frame | None, asked: Standpoint) -> Drawing:
@@ -59,5 +59,5 @@ DRAWINGS: dict[int, Callable[[Model, Frame | None, Standpoint], Drawing]] = {2: 
 
 
 def drawing_of(model: Model, frame: Frame | None, asked: Standpoint = AS_BEST) -> Drawing:
-    """frame: whose motion the reader should see best. Raises UsageError for a standpoint that there is not."""
+    """Create the drawing for a dimension; frame: whose motion should be seen best. Raises UsageError."""
     return DRAWINGS[model.dimension](model, frame, asked)

@@ -1,4 +1,4 @@
-"""Hidden surfaces by a depth buffer: which face of which convex part each pixel of a picture shows.
+"""Hidden surface removal by a depth buffer: the face of a convex part that each pixel of a picture shows.
 
 Faces that look away are left out; the others are cut into rows of pixels between their left and right edges, and of all
 that cover a pixel the nearest stays. Source: E. Catmull, A Subdivision Algorithm for Computer Display of Curved
@@ -20,7 +20,7 @@ _AT_ONCE = 4_000_000  # pixels
 
 
 class Window(NamedTuple):
-    """Window of a picture: its lower left corner, the side of a pixel, and how many there are."""
+    """Window of a picture: lower left corner, side of a pixel, and numbers of pixels."""
 
     low: np.ndarray  # [m], (2,)
     pixel: float  # [m]
@@ -28,14 +28,14 @@ class Window(NamedTuple):
 
 
 class SeenSurface(NamedTuple):
-    """Seen surface of a structure, row by row from below."""
+    """Visible surface of a structure, row by row from below."""
 
     faces: np.ndarray  # face of each pixel, or NOTHING, (rows, columns)
     depths: np.ndarray  # towards the reader [m]; −∞ where there is nothing, (rows, columns)
     window: Window
 
     def shown(self, places: np.ndarray, tolerance: float) -> np.ndarray:
-        """Which points (n, 3), as the picture has them, nothing covers by more than a tolerance [m], (n,) bool."""
+        """Test which points (n, 3) in picture coordinates are not hidden by more than a tolerance [m], (n,) bool."""
         rows, columns = self.faces.shape
         at = np.floor((places[:, :2] - self.window.low) / self.window.pixel).astype(np.int64)
         inside = (at >= 0).all(axis=1) & (at[:, 0] < columns) & (at[:, 1] < rows)
@@ -44,7 +44,7 @@ class SeenSurface(NamedTuple):
 
 
 class _Rings(NamedTuple):
-    """Edges of all faces that look at the reader, in pixels."""
+    """Edges of all faces towards the viewer, in pixels."""
 
     starts: np.ndarray  # corners of each edge, (n_edges, 3)
     ends: np.ndarray
@@ -53,14 +53,14 @@ class _Rings(NamedTuple):
 
 
 def window_of(low: np.ndarray, high: np.ndarray, most: int) -> Window:
-    """A window with so many pixels along its longer side."""
+    """Create a window with so many pixels along its longer side."""
     pixel = float((high - low).max()) / most
     columns, rows = np.maximum(1, np.ceil((high - low) / pixel - 1e-9)).astype(int)
     return Window(low, pixel, (int(rows), int(columns)))
 
 
 def seen_surface(places: np.ndarray, starts: np.ndarray, corners: np.ndarray, window: Window) -> SeenSurface:
-    """Visible surface of convex faces, which are counter-clockwise seen from outside.
+    """Find the visible surface of convex faces, which are counter-clockwise seen from outside.
 
     places: corners as the picture has them, to the right, upwards, towards the reader [m], (n, 3); face f has
     corners[starts[f]:starts[f + 1]].
@@ -98,7 +98,7 @@ def _rings(places: np.ndarray, starts: np.ndarray, corners: np.ndarray, window: 
 
 
 def _covered(rings: _Rings, rows: int, columns: int) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Pixels that the faces cover, piece by piece: number of the pixel, face, depth."""
+    """Yield the pixels that the faces cover, piece by piece: number of the pixel, face, depth."""
     edge, row = _crossings(rings, rows)
     a, b = rings.starts[edge], rings.ends[edge]
     x = a[:, 0] + (row + 0.5 - a[:, 1]) * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
@@ -120,7 +120,7 @@ def _covered(rings: _Rings, rows: int, columns: int) -> Iterator[tuple[np.ndarra
 
 
 def _crossings(rings: _Rings, rows: int) -> tuple[np.ndarray, np.ndarray]:
-    """Edges and the rows of pixels whose middle they cross."""
+    """Return the edges and the rows of pixels whose middle they cross."""
     heights = np.clip(np.ceil(np.stack([rings.starts[:, 1], rings.ends[:, 1]]) - 0.5), 0, rows).astype(np.int64)
     low, high = heights.min(axis=0), heights.max(axis=0)
     counts = high - low

@@ -1,4 +1,4 @@
-"""Strokes that show joints: in the plane along each half of a joint, in space around the face that two blocks share.
+"""Strokes that show joints: in the plane along each half of a joint, in space around the shared face.
 
 A stroke belongs to a contact point, whose state colours it.
 """
@@ -13,7 +13,7 @@ from dem_cli.core.geometry.polygon import following
 from dem_cli.core.geometry.rotation import tangents_of
 from dem_cli.core.records.frames import STATES, ContactRecord
 
-_INNER = 1e-3  # of the reach of its joint: a point so close to the middle is none of its corners
+_INNER = 1e-3  # of the reach of its joint: a point closer to the middle is no corner
 
 
 class JointStrokes(NamedTuple):
@@ -25,12 +25,12 @@ class JointStrokes(NamedTuple):
 
 
 def strokes(contacts: ContactRecord) -> JointStrokes:
-    """Of all joints that have an extent; what is one point has none."""
+    """Return the strokes of all joints with an extent; single points have none."""
     return _STROKES[contacts.points.shape[1]](contacts)
 
 
 def visible_strokes(contacts: ContactRecord) -> JointStrokes:
-    """As `strokes`, without closed joints in space: there the edges of the stones show these."""
+    """Return the strokes without closed joints in space, where the edges of the stones show them."""
     found = strokes(contacts)
     if contacts.points.shape[1] == 2:
         return found
@@ -39,19 +39,19 @@ def visible_strokes(contacts: ContactRecord) -> JointStrokes:
 
 
 def middles(contacts: ContactRecord) -> np.ndarray:
-    """Middle of all points of its joint, for each point [m], (n, d)."""
+    """Return the middle of all points of its joint, for each point [m], (n, d)."""
     _, owner, counts = np.unique(contacts.joint, return_inverse=True, return_counts=True)
     sums = [np.bincount(owner, column, len(counts)) for column in contacts.points.T]
     return (np.stack(sums, axis=1) / counts[:, np.newaxis])[owner] if len(counts) else contacts.points
 
 
 def _halves(contacts: ContactRecord) -> JointStrokes:
-    """From each point to the middle of its joint."""
+    """Create strokes from each point to the middle of its joint."""
     return JointStrokes(contacts.points, middles(contacts), np.arange(len(contacts.joint)))
 
 
 def _outlines(contacts: ContactRecord) -> JointStrokes:
-    """Around each joint: half of the way to either neighbour belongs to a corner."""
+    """Create strokes around each joint: half of the way to either neighbour belongs to a corner."""
     corners, starts = joint_rings(contacts)
     if not len(corners):
         return JointStrokes(contacts.points[:0], contacts.points[:0], corners)
@@ -65,7 +65,7 @@ def _outlines(contacts: ContactRecord) -> JointStrokes:
 
 
 def joint_rings(contacts: ContactRecord) -> tuple[np.ndarray, np.ndarray]:
-    """Contact points around each joint in space, counter-clockwise seen from block b, joint after joint; their starts.
+    """Order contact points around each joint in space, counter-clockwise seen from block b; with their starts.
 
     Points inside of a joint are left out, and joints of a single point.
     """

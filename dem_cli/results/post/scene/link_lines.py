@@ -14,7 +14,7 @@ THICKEST, THINNEST = 4.0, 1.1  # points: where the force is largest, and where t
 
 
 def draw_lines(axis: Any, frame: Frame, flat: Callable[[np.ndarray], np.ndarray]) -> None:
-    """Each piece as thick as its force is large beside the largest of all; nothing where there are no links."""
+    """Draw each piece as thick as its force relative to the largest; nothing without links."""
     if frame.links is None:
         return
     from matplotlib.collections import LineCollection

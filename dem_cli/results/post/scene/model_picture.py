@@ -1,4 +1,4 @@
-"""Picture of a model before a run (`dem check --plot`): blocks, supports hatched, loads as arrows, what it is of."""
+"""Picture of a model before a run (`dem check --plot`): blocks, hatched supports, loads as arrows, caption."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class ModelFacts(NamedTuple):
 
 
 def draw_model(model: Model, facts: ModelFacts, path: Path, asked: Standpoint = AS_BEST) -> None:
-    """Writes the picture. Raises UsageError for a standpoint that there is not."""
+    """Draw the model. Raises UsageError for an impossible viewpoint."""
     drawing = drawing_of(model, None, asked)
     corners = rest_vertices(model)
     low, high = _shown(model, drawing.flat(corners))
@@ -70,7 +70,7 @@ def draw_model(model: Model, facts: ModelFacts, path: Path, asked: Standpoint = 
 
 
 def _shown(model: Model, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The part of the picture that is shown: all, or of ground far wider than what stands on it what is near."""
+    """Return the limits of the picture; ground far wider than the structure is cut."""
     low, high = corners.min(axis=0), corners.max(axis=0)
     free = ~model.fixed[model.vertex_blocks]
     standing = np.ptp(corners[free] if free.any() else corners, axis=0)
@@ -83,7 +83,7 @@ def _shown(model: Model, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _forces(
     model: Model, facts: ModelFacts, drawing: Drawing, reach: float
 ) -> list[tuple[np.ndarray, np.ndarray, str]]:
-    """Arrows of all forces but the weight: tail, tip and colour in the picture.
+    """Return arrows of all forces except self-weight: tail, tip and colour in the picture.
 
     A force acts along its line; where it stands at a distance from the centroid, that is where its moment puts it.
     """
@@ -107,7 +107,7 @@ def _forces(
 
 
 def _arm(force: np.ndarray, moment: np.ndarray) -> np.ndarray:
-    """From the centroid to the nearest point of the line along which a force with a moment acts [m]."""
+    """Return the arm from the centroid to the line of action of a force with a moment [m]."""
     if len(force) == 2:
         return moment[0] * np.array([-force[1], force[0]]) / float(force @ force)
     return np.cross(force, moment) / float(force @ force)
@@ -116,7 +116,7 @@ def _arm(force: np.ndarray, moment: np.ndarray) -> np.ndarray:
 def _as_a_whole(
     model: Model, facts: ModelFacts, drawing: Drawing, reach: float
 ) -> list[tuple[np.ndarray, np.ndarray, str]]:
-    """One arrow for what acts on all blocks, at the middle of all that can move; of the ground below it."""
+    """Return one arrow for a load on all blocks, at the middle of all that can move, or of the ground below it."""
     free = ~model.fixed if not model.fixed.all() else model.fixed
     found = []
     if facts.pushed is not None:

@@ -1,4 +1,4 @@
-"""Drawing of structures in the plane: polygons, outlines of the start, joints by state."""
+"""Drawing of structures in the plane: polygons, initial outlines, joints by state."""
 
 from __future__ import annotations
 
@@ -26,15 +26,17 @@ class PlaneDrawing:
         self.model = model
 
     def flat(self, points: np.ndarray) -> np.ndarray:
-        """Where points (n, d) are in the picture [m], (n, 2)."""
+        """Return points (n, 2) unchanged [m]."""
         return points
 
     def window(self, corners: Sequence[np.ndarray], low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The part of the picture that shows a part of the plane."""
+        """Return the limits of the picture, a part of the plane."""
         return low, high
 
     def draw_blocks(self, axis: Any, low: np.ndarray, high: np.ndarray) -> Callable[[np.ndarray], None]:
-        """The blocks, filled, fixed ones as ground; returns what puts their corners (n_vertices, 2) in place."""
+        """Draw the blocks, filled, fixed ones as ground; returns a function that moves their corners (n_vertices,
+        2).
+        """
         from matplotlib.collections import PolyCollection
 
         fixed = self.model.fixed[self.model.part_blocks]
@@ -44,7 +46,7 @@ class PlaneDrawing:
         return lambda corners: blocks.set_verts(self._polygons(corners))
 
     def draw_supports(self, axis: Any, colour: str) -> None:
-        """Hatches over the blocks that cannot move."""
+        """Draw hatches over fixed blocks."""
         from matplotlib.collections import PolyCollection
 
         fixed = self.model.fixed[self.model.part_blocks]
@@ -54,7 +56,7 @@ class PlaneDrawing:
         )
 
     def draw_rest(self, axis: Any, low: np.ndarray, high: np.ndarray) -> None:
-        """Outlines of the blocks where they stood at the start."""
+        """Draw the initial outlines of the blocks."""
         from matplotlib.collections import PolyCollection
 
         rest = self._polygons(rest_vertices(self.model))
@@ -63,7 +65,7 @@ class PlaneDrawing:
         )
 
     def draw_joints(self, axis: Any, frame: Frame, hairline: float) -> None:
-        """Each contact point colours its half of the joint; open by less than `hairline` [m]: faint."""
+        """Colour each half of a joint by its contact point; open by less than `hairline` [m]: faint."""
         from matplotlib.collections import LineCollection
 
         contacts, found, width = frame.contacts, strokes(frame.contacts), joint_width(self.model)
@@ -75,22 +77,22 @@ class PlaneDrawing:
             axis.plot(*contacts.points[i], "o", ms=1.4 * width, color=colours[i], zorder=3)
 
     def draw_links(self, axis: Any, frame: Frame) -> None:
-        """Ties and bars, over all blocks: lines as dark as the force in them."""
+        """Draw ties and bars over all blocks: lines as dark as their force."""
         draw_lines(axis, frame, self.flat)
 
     def finish(self, axis: Any) -> None:
-        """Nothing: x is to the right and y upwards."""
+        """Draw no axes: x is to the right and y upwards."""
 
     def _polygons(self, corners: np.ndarray) -> list[np.ndarray]:
         return [corners[a:b] for a, b in zip(self.model.part_starts, self.model.part_starts[1:])]
 
 
 def joint_width(model: Model) -> float:
-    """Width of the strokes of joints [points]."""
+    """Return the width of the strokes of joints [points]."""
     return float(np.clip(32.0 / np.sqrt(model.n_blocks + 1), 0.6, 3.2))
 
 
 def state_colour(state: int, hairline: bool) -> tuple[str, float]:
-    """Colour and opacity of a joint; hairlines, where it is open, are faint."""
+    """Return colour and opacity of a joint; open hairlines are faint."""
     name = STATES[state]
     return style.STATE_COLOURS[name], 0.3 if name == "open" and hairline else 1.0

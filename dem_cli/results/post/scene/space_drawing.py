@@ -1,4 +1,4 @@
-"""Drawing of structures in space: an axonometric view of lit faces with crisp edges, joints where they can be seen."""
+"""Drawing of structures in space: axonometric view of lit faces with crisp edges and visible joints."""
 
 from __future__ import annotations
 
@@ -42,18 +42,18 @@ class SpaceDrawing:
         self.seen: SeenSurface | None = None
 
     def flat(self, points: np.ndarray) -> np.ndarray:
-        """Where points (n, d) are in the picture [m], (n, 2)."""
+        """Project points (n, 3) to the picture plane [m], (n, 2)."""
         return self.view.flat(points)
 
     def window(self, corners: Sequence[np.ndarray], low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The part of the picture that shows all corners (n, 3) as far as they are in a box in space."""
+        """Return the limits of the picture that show all corners (n, 3) as far as they are in a box in space."""
         seen = np.concatenate([self.flat(np.clip(places, low, high)) for places in corners])
         left, right = seen.min(axis=0), seen.max(axis=0)
         margin = _MARGIN * float((right - left).max())
         return left - margin, right + margin
 
     def draw_blocks(self, axis: Any, low: np.ndarray, high: np.ndarray) -> Callable[[np.ndarray], None]:
-        """The blocks, lit, fixed ones as ground; returns what puts their corners (n_vertices, 3) in place."""
+        """Draw the blocks, lit, fixed ones as ground; returns a function that moves their corners (n_vertices, 3)."""
         window = window_of(low, high, _FINEST)
         right, top = window.low + window.pixel * np.array(window.shape[::-1])
         blank = np.full((*window.shape, 3), 255, np.uint8)
@@ -67,7 +67,7 @@ class SpaceDrawing:
         return place
 
     def _picture(self, corners: np.ndarray, window: Window) -> np.ndarray:
-        """Red, green and blue of every pixel, rows from below."""
+        """Return red, green and blue of every pixel, rows from below."""
         from matplotlib.colors import to_rgb
 
         places = self.view.placed(corners)
@@ -82,7 +82,9 @@ class SpaceDrawing:
         return picture
 
     def _sheets(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Unit normals of all faces in the picture, (n_faces, 3), and what faces of one block in one plane share."""
+        """Compute unit normals of all faces in the picture, (n_faces, 3), and the common planes of faces of one
+        block.
+        """
         at = places[self.corners]
         first = at[self.starts[:-1]]
         arms = at - np.repeat(first, np.diff(self.starts), axis=0)
@@ -96,7 +98,7 @@ class SpaceDrawing:
         return normals, np.unique(keys, axis=0, return_inverse=True)[1].ravel()
 
     def draw_supports(self, axis: Any, colour: str) -> None:
-        """Hatches over what is seen of the blocks that cannot move."""
+        """Draw hatches over the visible parts of fixed blocks."""
         if self.seen is None or not self.model.fixed.any():
             return
         fixed = np.append(self.model.fixed[self.owners], False)
@@ -106,7 +108,7 @@ class SpaceDrawing:
             axis.contourf(x, y, mask, levels=[0.5, 1.5], colors="none", hatches=["////"], zorder=1.5)
 
     def draw_rest(self, axis: Any, low: np.ndarray, high: np.ndarray) -> None:
-        """Outline of the structure where it stood at the start."""
+        """Draw the initial outline of the structure."""
         free = ~self.model.fixed[self.owners]
         if not free.any():
             return
@@ -118,7 +120,7 @@ class SpaceDrawing:
         axis.contour(x, y, shown, levels=[0.5], colors=style.REST, linewidths=0.9, linestyles=[(0, (3, 2))], zorder=2)
 
     def draw_joints(self, axis: Any, frame: Frame, hairline: float) -> None:
-        """Each contact point colours its corner of the joint, as far as it can be seen; closed joints are edges."""
+        """Colour each corner of a joint by its contact point, as far as it is visible; closed joints are edges."""
         from matplotlib.collections import LineCollection
 
         contacts = frame.contacts
@@ -141,11 +143,11 @@ class SpaceDrawing:
         axis.add_collection(LineCollection(list(lines), colors=colours, linewidths=width, capstyle="butt", zorder=3))
 
     def draw_links(self, axis: Any, frame: Frame) -> None:
-        """Ties and bars, over all blocks: lines as dark as the force in them."""
+        """Draw ties and bars over all blocks: lines as dark as their force."""
         draw_lines(axis, frame, self.flat)
 
     def finish(self, axis: Any) -> None:
-        """Arrows that show where x, y and z point, in the corner from which the foot of the structure recedes."""
+        """Draw arrows along x, y and z, in the corner from which the foot of the structure recedes."""
         (left, right), (low, high) = axis.get_xlim(), axis.get_ylim()
         length = _TRIAD * max(right - left, high - low)
         at = np.array([left + 1.5 * length if self.lit_from < 0.0 else right - 1.5 * length, low + 1.5 * length])
@@ -157,20 +159,20 @@ class SpaceDrawing:
 
 
 def _middles(window: Window) -> list[np.ndarray]:
-    """Middles of the pixels of a window, along and upwards [m]."""
+    """Return the middles of the pixels of a window, along and upwards [m]."""
     rows, columns = window.shape
     return [window.low[k] + window.pixel * (np.arange(n) + 0.5) for k, n in enumerate((columns, rows))]
 
 
 def _hatched(colour: str) -> Any:
-    """Hatches of contours have the colour that is set, and no other."""
+    """Set the colour of hatches, since those of contours take no other."""
     import matplotlib
 
     return matplotlib.rc_context({"hatch.color": colour, "hatch.linewidth": 0.6})
 
 
 def _edges(sheets: np.ndarray) -> np.ndarray:
-    """Pixels at which one face ends and another begins, (rows, columns) bool."""
+    """Find the pixels at which one face ends and another begins, (rows, columns) bool."""
     found = np.zeros(sheets.shape, bool)
     differs = sheets[1:] != sheets[:-1]
     found[1:] |= differs
