@@ -66,7 +66,7 @@ def take_back(sim: Simulation, points: np.ndarray) -> None:
     before = sim.measured().gaps
     moves.shift(sim, motion_that_opens(sim, points, before))
     gaps = sim.measured().gaps
-    closure = np.minimum(gaps, 0.0)  # of open points: they stay open
+    closure = sim.contacts.closure + gaps - before  # open points stay open by as much as springs opened them
     closure[points] = gaps[points] + sim.contacts.normal[points] / sim.joints.kn[points]
     sim.contacts.closure[:] = closure
     sim.contacts.gaps[:] = gaps  # the next step goes on from here
