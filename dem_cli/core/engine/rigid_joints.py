@@ -10,7 +10,8 @@ instead, wherever the structure is at rest (Uzawa's iteration): a point keeps it
 
 and the blocks go back by the elastic displacements u that they had, found at once from K u = Bᵀ kn d, d being the
 closure of the points that press and K their stiffness, with next to none along the joints: what slid elastically goes
-back as well. Forces stay; what is left is the change of the levers, some per cent of the first, so that each round
+back as well. Open points keep the gap that springs gave them, c ← c + Δg, so that the same points press as in fixed
+geometry. Forces stay; what is left is the change of the levers, some per cent of the first, so that each round
 leaves a small share of the lean of the one before: an equilibrium is one of rigid blocks, whatever kn.
 
 Not where joints bond, whose forces hang on their gaps, nor where kn is given. Reference: Simo and Laursen 1992, An

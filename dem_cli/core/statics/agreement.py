@@ -87,6 +87,8 @@ def load_range(search: FailureLoad, resolution: float) -> dict[str, Any] | None:
     loads = [low, *(other.load for other in apart)]
     named = ", ".join(f"{_at_least(other)}{other.load:.5g} by {_BY[other.method]}" for other in apart)
     way = _WAYS.get(first.method, "raised from gravity in steps")
+    if any(other.method == PATH_OF_START for other in apart):
+        way += f" (blocks have moved by {search.peak_displacement:.2g} m there)"
     why = f"{low:.5g} {way}, {named}"
     return {"lowest": float(min(loads)), "highest": float(max(loads)), "why": why}
 
