@@ -1,4 +1,4 @@
-"""The contact problem of one increment: elastic joints without tension, Coulomb friction without dilation.
+"""Contact problem of one load increment: elastic joints without tension, Coulomb friction without dilation.
 
 In units of a mean block weight W and of W over a median joint stiffness. For every contact point
 
@@ -39,12 +39,12 @@ FAR = 1e6  # units that the point of a tie which yields is open: it carries noth
 
 
 def pairs_of(n_points: int, settings: PathSettings) -> SlipPairs:
-    """In the plane."""
+    """Choose the friction model of contact points in the plane: pairs of reserves and slips."""
     return SlipPairs(n_points)
 
 
 def cones_of(n_points: int, settings: PathSettings) -> SlipCones:
-    """In space; those of many points are compiled: a third of the time, but code to be loaded."""
+    """Choose the friction model of points in space; for many points the compiled one takes a third of the time."""
     if n_points < settings.cones_compiled:
         return SlipCones(n_points)
     from dem_cli.core.limit.compiled_cones import CompiledCones
@@ -56,7 +56,7 @@ KINDS: dict[int, Callable[[int, PathSettings], Slips]] = {2: pairs_of, 3: cones_
 
 
 class State(NamedTuple):
-    """A solution, in the units of `Elastic`."""
+    """Solution of one increment, in the units of `Elastic`."""
 
     displacements: np.ndarray  # of the free degrees of freedom, (n_free,)
     load: float  # multiplier of the scaled live loads
@@ -68,7 +68,7 @@ class State(NamedTuple):
 
 
 class Direction(NamedTuple):
-    """A Newton direction; `positive` belongs to the vector (N, c, p, a)."""
+    """Newton direction; `positive` belongs to the vector (N, c, p, a)."""
 
     displacements: np.ndarray
     load: float
@@ -76,7 +76,7 @@ class Direction(NamedTuple):
     positive: np.ndarray
 
     def and_on(self, other: Direction, share: float) -> Direction:
-        """This direction, and on by a share of another one."""
+        """Add a share of another direction to this one."""
         return Direction(
             self.displacements + share * other.displacements,
             self.load + share * other.load,
@@ -86,7 +86,7 @@ class Direction(NamedTuple):
 
 
 class Elastic:
-    """Matrices of a structure whose joints are elastic, scaled; the points of its ties follow those of its joints.
+    """Scaled matrices of a structure with elastic joints; points of its ties follow those of its joints.
 
     gaps: of all joints where displacements are zero [m], (n_joint_points,), negative: overlaps; None: they just touch.
     """
@@ -184,11 +184,11 @@ class Elastic:
             self.drawn.follow(normal)
 
     def opened(self, displacements: np.ndarray) -> np.ndarray:
-        """How far joints open by displacements of the free degrees of freedom, (n_points,)."""
+        """Compute the opening of joints by displacements of the free degrees of freedom, (n_points,)."""
         return (self.motion @ displacements)[: self.n_points]
 
     def slid(self, displacements: np.ndarray) -> np.ndarray:
-        """How far they slide, as shear forces are numbered."""
+        """Compute the sliding of joints by displacements of the free degrees of freedom, numbered as shear forces."""
         return (self.motion @ displacements)[self.n_points :]
 
     def _points(self, structure: LimitStructure) -> PointRows:

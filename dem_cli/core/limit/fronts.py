@@ -49,7 +49,7 @@ class Fronts(NamedTuple):
 
 @dataclass
 class _Front:
-    """A front as it grows; by its last block."""
+    """Dense front during elimination; sorted by its last block."""
 
     blocks: list[int]
     rows: np.ndarray  # blocks left behind
@@ -58,7 +58,7 @@ class _Front:
 
 
 def fronts_of(pairs: np.ndarray, n_blocks: int, n_dof: int, places: np.ndarray | None = None) -> Fronts:
-    """The fronts of free blocks that touch in pairs, (n_pairs, 2) numbers of free blocks, each pair once.
+    """Build the fronts of free blocks that touch in pairs, (n_pairs, 2) numbers of free blocks, each pair once.
 
     places: of the blocks, for the order of many, (n_blocks, d).
     """
@@ -116,7 +116,7 @@ def _dissected(pairs: np.ndarray, places: np.ndarray) -> np.ndarray:
 def _cut(
     part: np.ndarray, places: np.ndarray, touching: np.ndarray, first: np.ndarray, half: np.ndarray
 ) -> tuple[list[np.ndarray], np.ndarray]:
-    """The sides of a part, and the fewest blocks that keep them apart, cut across the longest or the next direction.
+    """Separate a part into two sides by the fewest blocks, cut across its longest or next direction.
 
     touching, first: blocks that touch each block; half: room, zeros.
     """

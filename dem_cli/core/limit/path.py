@@ -1,4 +1,4 @@
-"""The failure load of joints that do not dilate: a path of elastic, frictional joints from gravity to collapse.
+"""Failure load of joints that do not dilate: a path of elastic, frictional joints from gravity to collapse.
 
 The displacement of the live load grows until its multiplier grows no more. Every point of the path is a
 state in equilibrium under the real, non-associated law (limit.elastic), so that the plateau is a true
@@ -32,7 +32,7 @@ UNFINISHED = "not converged: the load still grows with displacement"
 
 @dataclass
 class Path:
-    """The way to collapse, and its state at the highest load."""
+    """Path of the load to collapse, and the state at its highest load."""
 
     status: str  # OK, FALLS, UNFINISHED
     load: float | None = None  # multiplier of the live loads, as users know it
@@ -72,15 +72,16 @@ class Path:
 
     @property
     def finished(self) -> bool:
-        """Whether the load stopped growing."""
+        """Test whether the load stopped growing."""
         return self.status == OK
 
     def flat(self, share: float) -> bool:
-        """Whether the highest load is a plateau, reached beyond that share of the displacement, and not a peak."""
+        """Test whether the highest load is a plateau, reached beyond that share of the displacement, rather than a
+        peak."""
         return self.finished and self.reached[self.highest] > share * self.reached[-1]
 
     def summary(self) -> dict[str, Any]:
-        """What summary.json says of it."""
+        """Return the entries of summary.json about the path."""
         return {
             "load": self.load,
             "status": self.status,
@@ -102,7 +103,7 @@ def trace(
     progress: Callable[[float, float], None] = lambda load, reached: None,
     settings: LimitSettings = DEFAULT_LIMIT,
 ) -> Path:
-    """From gravity to the plateau of the load.
+    """Trace the load path from gravity to the plateau of the load.
 
     friction  coefficient of every point [-], (n_points,)
     plateau   relative growth of the load, over that of the displacement, that counts as none (None: as the settings)
@@ -138,7 +139,7 @@ def trace(
 
 
 class Stride(NamedTuple):
-    """One increment that led to a state, and the state before it."""
+    """Increment that led to a state, and the state before it."""
 
     increment: Increment
     before: State
@@ -149,7 +150,7 @@ class Stride(NamedTuple):
 
 
 class Walk:
-    """The way from gravity, increment by increment: longer ones where they are easy, shorter ones where they fail."""
+    """Incremental path from gravity: longer increments where they succeed, shorter ones where they fail."""
 
     def __init__(self, problem: Elastic, standing: State, stop: Callable[[], bool]) -> None:
         self.problem, self.settings, self.stop = problem, problem.settings.path, stop
@@ -160,7 +161,7 @@ class Walk:
         self.last: Stride | None = None
 
     def go_on(self) -> bool:
-        """Whether an increment of some size led to another state: one under the law, or a rough one (State.left)."""
+        """Try increments of several sizes; True where one led to another state, exact or rough (State.left)."""
         settings = self.settings
         longest = (settings.growth - 1.0) * self.reached if self.reached else settings.first
         found, resort = None, None  # a rough state is the last resort, where shorter increments lead nowhere either
@@ -273,7 +274,7 @@ def _slope(path: Path, settings: PathSettings, load: float, reached: float) -> t
 
 
 def is_plateau(settings: PathSettings, reached: float, since: float, slope: float) -> bool:
-    """Whether a load that grows no more since a displacement has come to its plateau.
+    """Test whether a load that grows no more since a displacement has come to its plateau.
 
     slope: of the last increment, in those that count as none. Early on, while joints still open and close one after
     the other, a load may rest and rise again: there it has to last. Later the first plateau counts.
@@ -298,7 +299,7 @@ def _advance(
     folds: int = 0,
     easier: float = 1.0,
 ) -> State | None:
-    """The state at a displacement of the live load; without one, under dead loads alone."""
+    """Solve for the state at a displacement of the live load; without one, under dead loads alone."""
     tau = easier * first_products(problem, state, target)
     return Increment(problem, state, target).solve(tau, 0.0, folds, stop)
 
@@ -318,7 +319,7 @@ def compliance(problem: Elastic, state: State) -> float:
 
 
 def _polish(path: Path, structure: LimitStructure, problem: Elastic, stride: Stride, reached: float) -> None:
-    """The increment of the highest load, solved to the end; and the one before, for the mechanism between them."""
+    """Solve the increment of the highest load to the end, and the one before, for the mechanism between them."""
     found = stride.increment.polished()
     if found is None or problem.residual(found, stride.before) > path.residual:
         return
@@ -341,7 +342,8 @@ def _keep(
     reached: float,
     since: State | None = None,
 ) -> bool:
-    """One more increment; its state in SI units, where the load is the highest so far: whether it is.
+    """Append an increment to the path, and store its state in SI units where the load is the highest; returns
+    whether it is.
 
     since: the state before, closer to the law, that the mechanism is taken from (None: before)
     """
