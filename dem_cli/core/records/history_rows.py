@@ -1,4 +1,4 @@
-"""Rows of a history, samples of the monitors, the energy ledger and the rows of many runs, as solvers hand them out."""
+"""Rows of a history, samples of monitors, the energy balance and the rows of many runs, as solvers return them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ MONITOR_UNITS |= {f"absolute {name}": MONITOR_UNITS[name] for name in ("displace
 
 
 class Energy(NamedTuple):
-    """The energy ledger [J], since the start of the run; external: applied loads without gravity."""
+    """Energy balance [J], since the start of the run; external: applied loads without gravity."""
 
     kinetic: float
     elastic: float
@@ -46,7 +46,7 @@ class Energy(NamedTuple):
 
 
 class HistoryRow(NamedTuple):
-    """One row of the history; rows are written in the order in which they come."""
+    """Row of the load history; rows are written in the order in which they come."""
 
     stage: str
     step: int
@@ -61,7 +61,7 @@ class HistoryRow(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """A stretch of the histories of a time history, at even intervals."""
+    """Samples of a stretch of a time history, at even intervals."""
 
     times: np.ndarray  # [s], (n,)
     base: np.ndarray  # acceleration, velocity and displacement of the base [m, s], (n, 3, d)
