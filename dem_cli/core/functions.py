@@ -64,7 +64,7 @@ class ShakenMotion(NamedTuple):
 def joints(law: str = "coulomb", **parameters: Any) -> StiffJoint:
     """Create joints between all blocks: a law of docs/laws by its name, and its parameters by theirs.
 
-    Raises ValueError for a name that is none, and with the key for a value that is not allowed.
+    Raises ValueError for a name that no law has, and with the key for a value that is not allowed.
     """
     from dem_cli.core.laws.registry import LAWS
 

@@ -71,7 +71,7 @@ class _Coda:
 def longest_coda(request: SolverRequest, model: Model) -> float:
     """Return the longest time for which a structure is followed after its motion [s].
 
-    What is asked for, else `least_limit`, or longer where it is tall: slow rocking goes by √(R/g), with half the
+    The requested time, else `least_limit`, or longer where it is tall: slow rocking goes by √(R/g), with half the
     height of the free blocks for R.
     """
     given, history = request.shaking.coda, DEFAULT.history

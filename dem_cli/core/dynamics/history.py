@@ -260,7 +260,7 @@ class TimeHistory:
     def _outcome(self, found: dict[str, Any]) -> Outcome:
         """Build the audited summary with its warnings."""
         sim = self.sim
-        fell = found["status"] == FALLS  # in pseudo-time, damped so that it may come to rest: nothing of the case
+        fell = found["status"] == FALLS  # in pseudo-time, damped to come to rest: no part of the motion
         shares = {} if fell else energy_shares(measures.energy(sim))
         if shares.get("local", 0.0) > self.job.settings.doubts.governs:
             self.job.warnings.append(

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from dem_cli.core.model.model import Model
 
 SMALL = (
-    1e-5  # rad, and shares of the radii of blocks: what is of second order is nothing yet, and a place that goes with
+    1e-5  # rad, and shares of the radii of blocks: what is of second order is negligible, and a place that goes with
 )
 # one block on one side of a rim and with the other one beyond it is half way between, as in a vibration
 

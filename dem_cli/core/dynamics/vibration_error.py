@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 AIM = 0.8  # of the allowed error, that a step is chosen for
 MOST_SAMPLES = 20_000  # of a motion
 MOST_TOGETHER = 20  # motions that are worked out at once
-MOST_RATIO = 0.9  # of damping that is told apart: beyond, nothing vibrates
+MOST_RATIO = 0.9  # of damping that is distinguished: beyond, nothing vibrates
 FADES = 200.0  # exponents that a stretch of samples goes through at most: exp of them is a number
 
 
@@ -59,8 +59,8 @@ def refined(
     """Refine the time step until elastic vibrations are right; returns it and a warning of what is still wrong, or
     "".
 
-    A step or a margin that the case gives stays; so does one of joints that are all as stiff as the program chose,
-    whose vibration is none of the structure.
+    A step or a margin that is given stays; so does one of joints that are all as stiff as the program chose,
+    whose vibration is not the structure's.
     """
     settings = sim.settings.history
     if not (found.held and motions) or bool(sim.properties.rigid.all()):

@@ -123,7 +123,7 @@ class DynamicSimulation(Simulation):
     def start_moving(self) -> None:
         """Move the velocities of time 0 back by half a step; their energy counts as given.
 
-        The first step begins as long before time 0 as it ends after it: half of its work is none of the run.
+        The first step begins as long before time 0 as it ends after it: half of its work is not of the run.
         """
         kinetic, saved, before = self.kinetic_energy(), self.save(), self.bodies.velocities.copy()
         self._run(0, 1, self._still(1), no_watch(self))
@@ -228,9 +228,9 @@ class DynamicSimulation(Simulation):
     ) -> None:
         """Advance n_steps over a stretch of ground motion, from its step `first`, with detection when it is due.
 
-        The books are closed in the middle of the last step, where places, velocities and forces are of one time; looks
-        along the way change no bit. reader: who looks at the forces of a step, before faces are found anew; its steps
-        are those of the stretch. Raises KeyboardInterrupt.
+        The energy balance is closed in the middle of the last step, where places, velocities and forces are of one
+        time; looks along the way change no bit. reader: who looks at the forces of a step, before faces are found anew;
+        its steps are those of the stretch. Raises KeyboardInterrupt.
         """
         step, end = first, first + n_steps
         done = round(self.time / self.dt) - first  # steps before that of number 0

@@ -44,7 +44,7 @@ class HistorySettings:
     blow_up: float = 0.2  # energy error over the largest energy from which a run is stopped
     inside: float = 1e-3  # of the smallest edge: blocks moved deeper into others than joints give when they close
     look: float = 0.1  # s of motion between two looks of one of many runs: collapse times are known to this
-    energy_every: int = 10  # looks from one look into the books to the next
+    energy_every: int = 10  # looks from one check of the energy balance to the next
     loose_step: float = 1e-4  # s: the time step where no joint limits it, at most
     loose_share: float = 1e-3  # of the duration: the same
     drift: float = (

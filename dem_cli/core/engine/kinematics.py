@@ -21,7 +21,7 @@ def why_moving(request: SolverRequest, model: Model) -> str | None:
     """Return the reason for large displacements before failure ("": requested); None: the initial geometry is good
     enough.
 
-    Raises CaseError where fixed geometry is asked for that joints do not allow.
+    Raises CaseError where fixed geometry is requested that joints do not allow.
     """
     wanted = request.analysis.kinematics
     profiles = [name for name, joint in request.joints.named.items() if joint.profile is not None]

@@ -21,7 +21,7 @@ from dem_cli.core.model.following_loads import FollowingLoads
 from dem_cli.core.records.frames import ContactRecord, Frame, LinkPlaces, LinkRecord
 from dem_cli.core.records.history_rows import Energy
 
-ROUND_OFF = 1e-9  # of forces that cancel on a block: what is left of them is none
+ROUND_OFF = 1e-9  # of forces that cancel on a block: what is left of them counts as zero
 NET, ALL = 0, 1  # of Contacts.exchanged
 
 

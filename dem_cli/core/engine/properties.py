@@ -163,7 +163,7 @@ class _OfEachJoint(NamedTuple):
     names: tuple[str, ...]  # of the named joints
     step: float  # time step [s] that velocities refer to
     lumped: bool  # whether blocks deform in their joints, so that kn is that of the joint and not of its name
-    seed: int  # of the case, from which friction is drawn
+    seed: int  # from which friction is drawn
 
 
 def _own_rows(

@@ -1,6 +1,6 @@
 """Settings of the solvers, all in one record: tolerances, damping, detection, and those of each kind of analysis.
 
-A case file offers none of them; benchmarks and studies hand in others. Each was chosen once, for all structures
+No input file can set them; benchmarks and studies pass others. Each was chosen once, for all structures
 (docs/numerics.md), and a summary names those that differ from the default.
 """
 
@@ -107,7 +107,7 @@ class RelaxationSettings:
     free_fall: float = 1e-4  # acceleration of a structure without any contact, in radii of its blocks per step²
     gentle: float = 0.01  # of what a block falls by itself: how fast a new load may move what it rests on
     fall_speed: float = 2e-3  # of the narrowest block: what a block that falls may move in a step, where geometry moves
-    shortest_ramp: int = 500  # steps: a shorter ramp of a load is none
+    shortest_ramp: int = 500  # steps: a shorter ramp of a load is left out
     longest_ramp: int = 20_000  # steps
     stair: int = 20  # steps between the loads of a ramp
     follow_every: int = 50  # steps between two looks at where loads that follow blocks are: they hardly turn meanwhile

@@ -79,8 +79,8 @@ class LoadSearchSettings:
     beyond: float = 0.35  # ... and the one above it
     small_steps: int = 200  # to the power of two above a load on which histories differ; 100 to 400 agree within 0.3 %
     least_of_fewest: float = 0.5  # of the fewest steps of an equilibrium so far, that small steps take: 0.6 to 1.3
-    light: float = 0.05  # load, over the weights, below which balance is asked for the more closely the smaller it is
-    noise: float = 3.0  # times what round-off leaves of balance: less is not asked for; 0.7 to 2.2 times were measured
+    light: float = 0.05  # load, over the weights, below which balance is required the more closely the smaller it is
+    noise: float = 3.0  # times what round-off leaves of balance: less is not required; 0.7 to 2.2 times were measured
     unbalanced: float = 0.5  # resolutions of a load, that this may be at most
     trial: int = 300_000  # steps of one trial until it is left undecided, at least; and
     trial_per_point: int = 100  # steps × number of contact points, and
@@ -182,7 +182,7 @@ class DisplacementControlSettings:
     """Settings of equilibria at prescribed displacements of the live load, from gravity to far beyond the peak of
     the curve.
 
-    Increments grow from a share of the elastic displacement to what the case asks for; ramps grow with their square
+    Increments grow from a share of the elastic displacement to the requested one; ramps grow with their square
     root, so that blocks are accelerated as much.
     """
 

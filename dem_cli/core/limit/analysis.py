@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float, float], None]
 ROUNDED = 1e-9  # of the widest gap that closes: round-off of where it is measured again
-LOWER, LEAST = "lower", "least"  # bounds of joints that do not dilate, which are found where they are asked for
+LOWER, LEAST = "lower", "least"  # bounds of joints that do not dilate, which are computed on request
 BOUNDED = (2,)  # dimensions in which these are known
 SETTLED = (2,)  # dimensions in which LOCKED leaves no question: out of plane joints may lock because they dilate
 
@@ -41,12 +41,12 @@ class LimitLoads(NamedTuple):
     structure: LimitStructure
     friction: np.ndarray  # coefficient of every point [-], (n_points,)
     associated: LimitLoad  # joints dilate as they slide: an upper bound
-    non_associated: Path | None  # joints do not; None where not asked for, or where the first answer leaves no question
+    non_associated: Path | None  # joints do not; None where not requested, or where the first answer leaves no question
     seconds: float  # wall time of the associated load, with detection and matrices
     path_seconds: float | None  # of the non-associated load
     no_path: str | None = None  # why there is no non-associated load, where the joints are not of the kind
-    lower: LowerBound | None = None  # below it nothing collapses; None where not asked for
-    least: LeastLoad | None = None  # of joints that do not dilate; None where not asked for
+    lower: LowerBound | None = None  # below it nothing collapses; None where not requested
+    least: LeastLoad | None = None  # of joints that do not dilate; None where not requested
 
     @property
     def in_space(self) -> bool:
@@ -109,7 +109,7 @@ def limit_loads(
     heads_frictionless  no friction in joints steeper than 45° to the horizontal (thesis Table 5-3)
     associated_only     leave out the load of joints that do not dilate, which takes longer
     bounds              LOWER, LEAST or both, which take longer still
-    progress            told the load and the displacement of every increment of the path (limit.path)
+    progress            called with the load and the displacement of every increment of the path (limit.path)
 
     Raises UsageError without live loads, where the strength of the law is not held by straight lines, or where bounds
     are not known in so many dimensions.

@@ -141,8 +141,8 @@ def carried(
     """Test whether any forces inside the envelope carry the dead loads; returns also the error of the proof; None:
     unknown.
 
-    strength: as in associated_limit. False is a proof that nothing of this kind stands; True is none that it does:
-    joints that do not dilate may fail all the same.
+    strength: as in associated_limit. False is a proof that nothing of this kind stands; True does not prove that it
+    does: joints that do not dilate may fail all the same.
     """
     answer = _first_good(program_of(structure, strength, settings), standing, _judge_standing)
     return {OK: True, FALLS: False}.get(answer.status), answer.residual
@@ -167,7 +167,7 @@ def _first_good(
 def _answers(
     program: Program, solve: Callable[[Program, dict[str, Any]], ProgramSolution]
 ) -> Iterator[ProgramSolution]:
-    """Answers of one solver after the other, each found when it is asked for."""
+    """Answers of one solver after the other, each computed when it is needed."""
     if len(program.structure.free) >= program.settings.on_fronts:
         from dem_cli.core.limit.frontal_program import is_linear, solved_on_fronts
 

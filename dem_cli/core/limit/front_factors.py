@@ -124,7 +124,7 @@ def add_to_diagonal(values, diagonal, share):
 
 @kernel
 def factorise(values, fronts, update):
-    """LU of a matrix in `limit.fronts.Fronts`, in its place; True where no pivot is nothing. update: room."""
+    """LU of a matrix in `limit.fronts.Fronts`, in place; True where no pivot is zero. update: room."""
     for front in range(len(fronts.start) - 1):
         own, left = _sizes(fronts, front)
         at = fronts.start[front]
@@ -151,7 +151,7 @@ def _sizes(fronts, front):
 
 @inline
 def _divide_panel(square, below, beside, own, left, k):
-    """Three columns of a front, and three rows of what they leave; whether no pivot is nothing."""
+    """Three columns of a front, and three rows of what they leave; whether no pivot is zero."""
     end = k + 3
     for p in range(k, end):
         if square[p * own + p] == 0.0:

@@ -60,7 +60,7 @@ class Feasible(NamedTuple):
 
 
 def _to_zero(values: np.ndarray, change: np.ndarray) -> float:
-    """Share of a change, at most 1, after which the first of positive values is nothing."""
+    """Share of a change, at most 1, after which the first of positive values becomes zero."""
     return min(1.0, float((-values / np.minimum(change, -1e-300)).min(initial=1.0)))
 
 

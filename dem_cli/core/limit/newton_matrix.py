@@ -78,7 +78,7 @@ class NewtonMatrix:
         else:
             values[self.diagonal] += more
         if not factorise(values, fronts, self.room):
-            raise RuntimeError("a pivot is nothing: the matrix is singular")
+            raise RuntimeError("a pivot is zero: the matrix is singular")
         return FrontFactors(self)
 
     def _assemble(self, factors: np.ndarray) -> None:

@@ -108,7 +108,7 @@ def trace(
     friction  coefficient of every point [-], (n_points,)
     plateau   relative growth of the load, over that of the displacement, that counts as none (None: as the settings)
     effort    factorisations × points after which what was reached is returned (None: as the settings)
-    progress  told the load and the displacement of every increment
+    progress  called with the load and the displacement of every increment
 
     Raises UsageError where links are more than ties that only pull.
     """

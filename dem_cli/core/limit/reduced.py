@@ -8,7 +8,7 @@ flow is that of the real joint and associated, and which takes no more than the 
 Let forces of the reduced domain balance the dead loads and the live ones times `low`, and others the live ones times
 `reached`. Then virtual work of both in the mechanism of any collapse at a multiplier between them would take more than
 the loads give: there is no collapse in between, whatever the history. With N_min = −ft A, all that the strength itself
-says, this is the thesis's domain, |T| ≤ c A of joints without tension: nothing where cohesion is nothing. Statics says
+says, this is the thesis's domain, |T| ≤ c A of joints without tension: zero where cohesion is zero. Statics says
 more: N_min is found by one linear program for each joint, over all forces that the real joints carry at loads of the
 interval, and the interval is moved on from what was reached.
 

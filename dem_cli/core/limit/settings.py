@@ -36,7 +36,7 @@ class PathSettings:
     most: int = 2500  # factorisations before giving up
     most_in_space: int = 1200  # the same in 3D: what ends at all ends by then
     furthest: float = 1e5  # displacement at which a structure counts as self-locking
-    plateau: float = 2e-3  # relative growth of the load over that of the displacement that is none, ...
+    plateau: float = 2e-3  # relative growth of the load over that of the displacement that counts as zero, ...
     lasting: float = 2.0  # ... where it lasts until the displacement is so many times as large, ...
     early: float = 2.0  # ... or, from this displacement on, in two increments,
     calm: float = 0.5  # or in one of less than this share
@@ -142,7 +142,7 @@ class ReducedSettings:
 
     intervals: int = 12  # that are tried at most
     accuracy: float = 1e-3  # of the associated load, to which the bound is sought
-    least_gain: float = 0.02  # of an interval: less is none
+    least_gain: float = 0.02  # of an interval: less counts as zero
     shorter: float = 0.25  # share of an interval that is tried where it gave nothing
     effort: float = 5e4  # linear programs × joints, at most: some seconds
     margin: float = 1e-6  # in mean weights and of a load: what the solver leaves open
@@ -166,7 +166,7 @@ class LeastSettings:
     weights: tuple[float, ...] = (1.0, 0.1, 10.0, 0.01, 100.0)  # of rates beside forces, at the end of a path
     better: float = 1e-4  # share of the load that is an improvement
     gap: float = 1e-4  # relative, of load and proved bound at which a search ends
-    carries: float = 1e-7  # force in mean weights: less is none
+    carries: float = 1e-7  # force in mean weights: less counts as zero
     accepted: float = 1e-5  # residual of the conditions, in mean weights, of a state that is believed
 
 

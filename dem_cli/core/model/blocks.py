@@ -26,8 +26,8 @@ class Block:
                None: half the thickness to either side
     mass       of the whole block [kg]; None: by the density of its material
     crack      of a piece of a stone that can crack: the joint between its pieces; empty: it is a whole stone
-    path       where in the case file it comes from, for error messages
-    rank       place among the blocks of the case, in its order
+    path       where in the input it comes from, for error messages
+    rank       place among the blocks of the input, in its order
     """
 
     id: str

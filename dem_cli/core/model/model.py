@@ -51,8 +51,8 @@ class ModelArrays(NamedTuple):
     vertices: np.ndarray  # corners from the centroid of their block [m], (n_vertices, d); counter-clockwise in 2D
     dead_loads: np.ndarray  # weight and dead point loads [N, N m], (n_blocks, n_dof)
     live_loads: np.ndarray  # loads that the multiplier acts on [N, N m], (n_blocks, n_dof)
-    aliases: tuple[tuple[str, str], ...] = ()  # other names of blocks in the case file: (alias, name of the block)
-    selections: tuple[tuple[str, tuple[str, ...]], ...] = ()  # what the case file calls several blocks: (name, ids)
+    aliases: tuple[tuple[str, str], ...] = ()  # other names of blocks: (alias, name of the block)
+    selections: tuple[tuple[str, tuple[str, ...]], ...] = ()  # names of several blocks: (name, ids)
     # In space alone; in the plane they are empty, for there faces and axes follow from the corners:
     part_faces: np.ndarray = NONE  # part p has the faces part_faces[p]:part_faces[p + 1], (n_parts + 1,) int64
     face_starts: np.ndarray = NONE  # face f has face_corners[face_starts[f]:face_starts[f + 1]], (n_faces + 1,) int64
@@ -72,13 +72,11 @@ class ModelArrays(NamedTuple):
     restrained: np.ndarray = NO_RESTRAINTS  # motions of blocks that are held, (n_blocks, d + r) bool
     # Of stones that can crack alone, else empty:
     pieces: np.ndarray = NO_PIECES  # stone that each block is a piece of, by number, and the joint between its pieces,
-    # by its number in the case; −1: it is a whole stone, (n_blocks, 2) int64
+    # by the number of its name; −1: it is a whole stone, (n_blocks, 2) int64
     # Of structures whose head joints are not like their beds alone, else empty:
     courses: np.ndarray = NO_COURSES  # course that each block is laid in, by number, −1: none, and the row across that,
     # 0: it goes through all of them, (n_blocks, 2) int64
-    ranks: np.ndarray = (
-        NONE  # place of each block in the case file, in which order results have them, (n_blocks,) int64;
-    )
+    ranks: np.ndarray = NONE  # place of each block in the input, in which order results have them, (n_blocks,) int64;
     # empty: blocks are in that order
 
 
@@ -92,7 +90,7 @@ WHERE_ASKED_FOR = (
     "pieces",
     "courses",
     "ranks",
-)  # rows of blocks; empty where the case has nothing of it
+)  # rows of blocks; empty where the model has none
 
 
 class Model(ModelArrays):
@@ -218,7 +216,7 @@ class Model(ModelArrays):
         """Test whether each pair of blocks (n, 2) shares a head joint: both lie in one row of one course, (n,)
         bool.
 
-        None is where the case does not tell head joints from others: the model knows no courses then.
+        All are False where the model has no courses: head joints are not distinguished then.
         """
         if not len(self.courses):
             return np.zeros(len(blocks), bool)

@@ -40,9 +40,9 @@ def clauses(
     plateau: how long they stay strong [s]; target: the spectrum that they were made for, as strong as they are;
     elastic: that for a damping of 5 %, None where it is not known; first_period: T1 of the structure [s].
     """
-    few = f"{len(motions)} record{'s' * (len(motions) != 1)}, at least {FEWEST} are asked for"
+    few = f"{len(motions)} record{'s' * (len(motions) != 1)}, at least {FEWEST} are required"
     found = [
-        Clause("(3)", plateau >= STATIONARY, f"strong for {plateau:g} s, {STATIONARY:g} s are asked for"),
+        Clause("(3)", plateau >= STATIONARY, f"strong for {plateau:g} s, {STATIONARY:g} s are required"),
         Clause("(4)a", len(motions) >= FEWEST, few),
     ]
     if elastic is None:
@@ -52,12 +52,12 @@ def clauses(
     compared = fit(motions, elastic, first_period)
     low, high = compared.periods[[0, -1]].tolist()
     least = f"the mean is {compared.least_mean:.3f} of the spectrum at least, {low:.3g} to {high:.3g} s, "
-    least += f"{LEAST_MEAN:.2f} are asked for"
+    least += f"{LEAST_MEAN:.2f} are required"
     return [*found, _peaks(compared.mean_peak), Clause("(4)c", compared.least_mean >= LEAST_MEAN, least)]
 
 
 def _peaks(mean: float) -> Clause:
-    return Clause("(4)b", mean >= 1.0 - 1e-9, f"mean peak {mean:.3f} of ag S, 1 is asked for")
+    return Clause("(4)b", mean >= 1.0 - 1e-9, f"mean peak {mean:.3f} of ag S, 1 is required")
 
 
 def meets(found: Sequence[Clause]) -> bool | None:

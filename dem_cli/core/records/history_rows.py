@@ -55,7 +55,7 @@ class HistoryRow(NamedTuple):
     unbalanced: float  # largest unbalanced force on a block over its own weight
     overlap: float  # largest overlap [m]
     energy: Energy
-    monitors: tuple[float, ...]  # in the order of the case's [[monitor]] tables
+    monitors: tuple[float, ...]  # in the order of SolverRequest.monitors
     time: float = 0.0  # since the start of a time history [s]
     live_displacement: float = 0.0  # of the live load along itself since it rested under dead loads [m], signed
 
@@ -65,7 +65,7 @@ class Samples(NamedTuple):
 
     times: np.ndarray  # [s], (n,)
     base: np.ndarray  # acceleration, velocity and displacement of the base [m, s], (n, 3, d)
-    monitors: np.ndarray  # in the order of the case's [[monitor]] tables, (n, n_monitors)
+    monitors: np.ndarray  # in the order of SolverRequest.monitors, (n, n_monitors)
     # Highest value, its time [s], lowest, its time of each monitor at any step, (n_monitors, 4); (0, 4): of samples
     extremes: np.ndarray = NO_EXTREMES
     coda: bool = False  # whether the motion of the ground, or the time that a case asks for, was over
@@ -74,7 +74,7 @@ class Samples(NamedTuple):
 class RunRow(NamedTuple):
     """Outcome of one of many runs."""
 
-    structure: int  # 0: that of the case; others are slightly different
+    structure: int  # 0: the given one; others are slightly different
     record: str  # the ground motion
     intensity: float
     acceleration: float  # peak of the ground [m/s2]

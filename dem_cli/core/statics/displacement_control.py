@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from dem_cli.core.engine.simulation import Simulation
     from dem_cli.core.engine.state import SavedState
 
-WATCHED = 8  # looks: where a displacement is held, every so many of them is told
+WATCHED = 8  # looks: where a displacement is held, every so many of them is reported
 
 
 class Followed(NamedTuple):
@@ -185,7 +185,7 @@ class CurvePoint(NamedTuple):
 class CapacityCurve:
     """Points of a capacity curve from gravity on, and the state at its highest one.
 
-    whole: whether it came as far as was asked for; else its last point is where nothing rests any more, or, where
+    whole: whether it came as far as requested; else its last point is where nothing rests any more, or, where
     stopped says why, where the run ended.
     """
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 OK, NOT_CONVERGED, NO_FAILURE = "ok", "not converged", "no failure"
-EXISTS = "an equilibrium exists at this load"  # of a start that was asked for, which nothing says is reached
+EXISTS = "an equilibrium exists at this load"  # of a requested start, which nothing says is reached
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class FailureLoad:
     onset: float | None = None  # lowest held load at which blocks had moved by more than joints deform
     peak_displacement: float = 0.0  # largest displacement of a block at the highest equilibrium [m]
     held: SavedState | None = None  # state of the highest equilibrium
-    found: bool = False  # the load is known, as closely as asked for or `wide`
-    wide: bool = False  # the bracket is wider than asked for
+    found: bool = False  # the load is known, to the requested resolution or `wide`
+    wide: bool = False  # the bracket is wider than the requested resolution
     failing: Verdict | None = None
     impossible: bool = False  # limit analysis proved that nothing is in equilibrium there; the motion shows it
     failed_from: SavedState | None = None  # equilibrium from which the lowest failure began

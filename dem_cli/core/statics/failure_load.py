@@ -13,7 +13,7 @@ replaced by a prescribed rate of its own displacement q·u, and its multiplier i
 several times and then set to zero. A joint that slides back and forth on that way may have lost strength; where the
 creep ends in an equilibrium inside the bracket, that one is the highest.
 
-A start next to failure that the case asks for (statics/warm_start.py) is held a little below its load, and the load is
+A requested start next to failure (statics/warm_start.py) is held a little below its load, and the load is
 raised from there; one from limit analysis is an equilibrium that exists, and no more.
 """
 

@@ -6,7 +6,7 @@ linear oscillator of the same amplitudes F, u that loses as much energy E in a c
     ζ = E / (2π F u)
 
 Between two states of rest the load did at least what friction and springs took, at most all that it gave in the run;
-in between, damping of the run, are motion of the solver that is none of the structure, and what snaps. Within these
+in between, damping of the run, are motion of the solver and not of the structure, and what snaps. Within these
 bounds its work is that of a multiplier that is straight in the displacement.
 
 Source: Chopra, Dynamics of Structures, equivalent viscous damping, ζ = E_D/(4π E_S0) with E_S0 = F u/2. Of an elastic,

@@ -33,7 +33,7 @@ class RigidLimits:
     why_not   why limit analysis does not apply: geometry that moves, profiles, a law without a friction cone, no loads
     gaps      of all contact points at the start [m], (n_points,); what is open there carries nothing
     touching  points without a gap, (n_points,) bool
-    seconds   wall time of the associated load and of the path, as far as they were asked for
+    seconds   wall time of the associated load and of the path, as far as they were computed
     """
 
     def __init__(self, job: Job, sim: Simulation) -> None:

@@ -99,7 +99,7 @@ def place_at_rest(
     """Set a state of rest found elsewhere: forces [N] and gaps [m] of all contact points, displacements of all
     blocks.
 
-    displacements: (n_blocks, n_dof) [m, rad]. The books start anew with `Simulation.open_books`.
+    displacements: (n_blocks, n_dof) [m, rad]. The energy balance starts anew with `Simulation.open_books`.
     """
     d, bodies = sim.model.dimension, sim.bodies
     sim.contacts.normal[:], sim.contacts.shear[:], sim.contacts.gaps[:] = normal, shear, gaps
