@@ -190,7 +190,7 @@ class Swings:
         self.sim, self._looks = sim, [sim.places()[sim.free]]
 
     def look(self) -> None:
-        """Remember where blocks are."""
+        """Record the places and rotations of all blocks."""
         self._looks.append(self.sim.places()[self.sim.free])
 
     def small(self) -> bool:

@@ -36,12 +36,12 @@ class RockingBlock(NamedTuple):
     foot: np.ndarray  # points of the joint, from its centroid [m], (n, d)
 
     def rocks(self) -> Rocking:
-        """Return the edges about which the block rocks, before and after it lands."""
+        """Return the pivot points of the block and the axis of its turn."""
         return ROCKING[self.foot.shape[1]](self.foot)
 
 
 class Rocking(NamedTuple):
-    """Pivot points and axes about which a block rocks."""
+    """Pivot points and axis of a rocking block."""
 
     ends: np.ndarray  # where it turns, from its centroid and across the axis of its turn [m], (2, d)
     axis: np.ndarray  # of the turn by which it stands on the first of these, unit, (r,)

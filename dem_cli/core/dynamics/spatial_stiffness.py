@@ -41,7 +41,7 @@ SMALL = (
 
 
 class Attachment(NamedTuple):
-    """Share of contact points in the motion of block b; block a has the rest of 1."""
+    """Rotation and translation of contact points per motion of block b; block a has the rest of 1."""
 
     spins: np.ndarray  # of normal and tangents per spin of b, S_b, (n_points, 3, 3)
     follows: np.ndarray  # of the point per motion of b there, R, (n_points, 3, 3)

@@ -86,7 +86,7 @@ def unproven(request: SolverRequest, sim: Simulation) -> bool:
 
 
 def _shear(sim: Simulation) -> list[str]:
-    """Warn of shear stiffness that only a user can have chosen: "auto" has ks = kn."""
+    """Warn of a ratio ks/kn outside the usual range; "auto" joints have ks = kn."""
     properties = sim.properties
     ratios = properties.ks / properties.kn
     low, high = sim.settings.doubts.shear_low, sim.settings.doubts.shear_high
@@ -119,7 +119,7 @@ def unbending(request: SolverRequest, sim: Simulation) -> list[str]:
 
 
 def _stiff_beside(sim: Simulation, compliance: BlockCompliance | None, least: float) -> list[str]:
-    """Find joints that are more than `least` times as stiff as their blocks, and return by how many times."""
+    """Describe joints that are more than `least` times as stiff as their blocks, and by how many times."""
     if compliance is None:
         return []
     shares, named = measures.shares_of_blocks(sim, compliance), sim.properties.between(sim.model, sim.joints.blocks)

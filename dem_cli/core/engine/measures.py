@@ -222,8 +222,8 @@ def reweighting(sims: Sequence[Simulation]) -> dict[str, dict[str, float]]:
 
 
 def reweighting_shares(sim: Simulation) -> tuple[float, float]:
-    """Compute the energy that changed with the areas of contact points, net (minus: made) and the sum of all
-    amounts.
+    """Compute the share of energy that changed with the areas of contact points, net (minus: made) and the sum of
+    all amounts.
 
     Over the largest kinetic energy of a time history, or its elastic one where it hardly moves; in pseudo-time over the
     largest energy in the ledger.

@@ -144,7 +144,7 @@ def with_path(found: LimitLoads, settings: LimitSettings) -> LimitLoads:
     """Add the failure load of joints that do not dilate, where sliding in the associated mechanism may make it
     another.
 
-    As it was where the path does not apply: links, strength beside friction, no dead loads, or too many blocks for it.
+    Unchanged where the path does not apply: links, strength beside friction, no dead loads, or too many blocks for it.
     """
     structure, associated = found.structure, found.associated
     blocks, dimension = largest_structure(structure.joints.blocks, structure.model.fixed), structure.model.dimension

@@ -167,7 +167,7 @@ def _first_good(
 def _answers(
     program: Program, solve: Callable[[Program, dict[str, Any]], ProgramSolution]
 ) -> Iterator[ProgramSolution]:
-    """Answers of one solver after the other, each computed when it is needed."""
+    """Solve by one solver after the other, each only when its answer is needed."""
     if len(program.structure.free) >= program.settings.on_fronts:
         from dem_cli.core.limit.frontal_program import is_linear, solved_on_fronts
 
@@ -178,7 +178,7 @@ def _answers(
 
 
 def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
-    """Is this the largest load, or a proof that there is none?"""
+    """Judge a solution: the largest load, a proof that there is none, or neither."""
     if found.kind == UNBOUNDED:
         return _refusal(program, *_locked(program, found))
     if found.kind == IMPOSSIBLE:
@@ -207,7 +207,7 @@ def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
 
 
 def _judge_standing(program: Program, found: ProgramSolution) -> LimitLoad:
-    """Do the dead loads have forces that carry them?"""
+    """Judge whether the dead loads are in equilibrium with forces that the joints can carry."""
     if found.kind == IMPOSSIBLE:
         return _refusal(program, *_falls(program, found))
     forces, axial = program.split(program.cone.forces(program.cone.admissible(found.amounts)))
@@ -219,7 +219,7 @@ def _judge_standing(program: Program, found: ProgramSolution) -> LimitLoad:
 
 
 def _falls(program: Program, found: ProgramSolution) -> tuple[str, float]:
-    """Status and error of the proof: a mechanism that no joint resists and that the dead loads drive.
+    """Prove by a mechanism without resistance, driven by the dead loads, that nothing stands: status and error.
 
     Error: power of all dead loads together, as a contact force, against the largest violation; over dead power.
     """
@@ -231,7 +231,7 @@ def _falls(program: Program, found: ProgramSolution) -> tuple[str, float]:
 
 
 def _locked(program: Program, found: ProgramSolution) -> tuple[str, float]:
-    """Status and error of the proof: contact forces in balance with live loads alone."""
+    """Prove by contact forces in balance with live loads alone that no load fails: status and error."""
     s, amounts = program.structure, program.cone.endless(found.amounts)
     unbalanced = (program.motion.T @ amounts + found.multiplier * s.live) / s.scales
     load = found.multiplier * float(np.abs(s.live / s.scales).max())

@@ -162,7 +162,8 @@ class Elastic:
         return normal * self.weight, state.shear.reshape(-1, self.n_points)[:, :n].T * self.weight, gaps
 
     def put_ties(self, yielding: np.ndarray, plastic: np.ndarray) -> None:
-        """Ties that yield pull with their largest force, the others from their plastic elongations, (n_ties,) each."""
+        """Set the ties that yield, with their largest force, and the plastic elongations of the others, (n_ties,)
+        each."""
         if self.ties is not None:
             self.gaps = self.gaps.copy()
             self.gaps[self.n_joint_points :] = self.ties.gaps(plastic) + np.where(yielding, FAR, 0.0)
@@ -179,7 +180,7 @@ class Elastic:
         return len(self.kn)
 
     def draw_in(self, normal: np.ndarray) -> None:
-        """Friction acts by the centres of pressure of these normal forces from now on."""
+        """Set the centres of pressure of friction by these normal forces from now on."""
         if self.drawn is not None:
             self.drawn.follow(normal)
 
@@ -204,13 +205,14 @@ class Elastic:
         return PointRows(rows, columns, ((0, 0), *self.slips.products_of_rows), len(self.columns), places)
 
     def elastic(self, share: np.ndarray | float = 1.0) -> FrontFactors:
-        """LU of the structure while nothing slips; share: of the stiffness of every point."""
+        """Factorise the matrix by LU while nothing slips; share: of the stiffness of every point."""
         return self.factorised(share * self.kn, self.slips.elastic(share * self.ks))
 
     def factorised(
         self, stiff_n: np.ndarray, tangential: list[np.ndarray], viscosity: np.ndarray | None = None
     ) -> FrontFactors:
-        """LU of Bnᵀ kN Bn + Btᵀ kT Bt − Btᵀ c Bn; tangential: kT and −c (limit.slips: SlipStiffness.stiffness).
+        """Factorise Bnᵀ kN Bn + Btᵀ kT Bt − Btᵀ c Bn by LU; tangential: kT and −c (limit.slips:
+        SlipStiffness.stiffness).
 
         viscosity: of the free degrees of freedom, on the diagonal. Factors of the call before are lost. Raises
         RuntimeError where it is singular.
@@ -219,7 +221,7 @@ class Elastic:
         return self.matrix.factorised([stiff_n, *tangential], viscosity)
 
     def imbalance(self, normal: np.ndarray, shear: np.ndarray, load: float) -> np.ndarray:
-        """Unbalanced forces, (n_free,)."""
+        """Compute the unbalanced forces, (n_free,)."""
         return self.pull @ np.concatenate([normal, shear]) + self.dead + load * self.live
 
     def residual(self, state: State, before: State) -> float:
@@ -251,7 +253,7 @@ class DrawnFriction:
         self.motion = [problem.motion[k * n : (k + 1) * n] for k in range(problem.dimension)]
 
     def follow(self, normal: np.ndarray) -> None:
-        """Motions of the problem, and the rows of its matrix, by these normal forces (n_points,)."""
+        """Update the motions of the problem, and the rows of its matrix, by these normal forces (n_points,)."""
         if normal is self.normal:
             return
         self.normal, problem = normal, self.problem

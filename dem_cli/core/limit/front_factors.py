@@ -124,7 +124,7 @@ def add_to_diagonal(values, diagonal, share):
 
 @kernel
 def factorise(values, fronts, update):
-    """LU of a matrix in `limit.fronts.Fronts`, in place; True where no pivot is zero. update: room."""
+    """Factorise a matrix in `limit.fronts.Fronts` by LU, in place; True where no pivot is zero. update: room."""
     for front in range(len(fronts.start) - 1):
         own, left = _sizes(fronts, front)
         at = fronts.start[front]
@@ -151,7 +151,8 @@ def _sizes(fronts, front):
 
 @inline
 def _divide_panel(square, below, beside, own, left, k):
-    """Three columns of a front, and three rows of what they leave; whether no pivot is zero."""
+    """Divide three columns of a front, and three rows beside them, by their pivots; returns whether no pivot is
+    zero."""
     end = k + 3
     for p in range(k, end):
         if square[p * own + p] == 0.0:
@@ -180,7 +181,7 @@ def _divide_panel(square, below, beside, own, left, k):
 
 @inline
 def _eliminate(square, below, beside, own, left, k):
-    """Three columns of a front from all others, one after the other in each number."""
+    """Eliminate three columns of a front from all others, one after the other in each number."""
     end, n = k + 3, own - k - 3
     a, b = square[k * own + end : end * own], beside[k * left : end * left]
     c, two, three = below[k * left : end * left], 2 * left, 2 * own
@@ -202,7 +203,7 @@ def _eliminate(square, below, beside, own, left, k):
 
 @inline
 def _multiply(below, beside, own, left, update):
-    """Strip below × strip beside, (left, left), three rows and three columns of the front at a time."""
+    """Multiply the strip below by the strip beside, (left, left), three rows and three columns at a time."""
     for i in range(0, left, 3):
         one, two = update[i * left : (i + 1) * left], update[(i + 1) * left : (i + 2) * left]
         three = update[(i + 2) * left : (i + 3) * left]

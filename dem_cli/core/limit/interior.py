@@ -190,7 +190,8 @@ class Increment:
         return self._predicted(at, mean)
 
     def _predicted(self, at: Iterate, mean: float) -> Direction:
-        """Mehrotra's predictor and corrector, and Gondzio's correctors towards the central path."""
+        """Compute the next step by Mehrotra's predictor and corrector, and Gondzio's correctors towards the
+        central path."""
         settings, slips = self.settings, self.problem.slips
         straight = self._direction(0.0)
         length = self._to_boundary(at, straight, 1.0)
@@ -263,7 +264,7 @@ class Increment:
     # -- Newton ---------------------------------------------------------------------------------------
 
     def _residuals(self, at: Iterate) -> float:
-        """Residuals of the linear equations into self; returns the largest."""
+        """Compute the residuals of the linear equations into self; returns the largest."""
         problem, before, slips = self.problem, self.before, self.problem.slips
         normal, opening = slips.normals(at.x)
         self.unbalanced = problem.imbalance(normal, at.shear, at.load)
@@ -308,13 +309,13 @@ class Increment:
                            self.off_target)  # fmt: skip
 
     def _tangent(self) -> Direction:
-        """Change of the central path by τ."""
+        """Compute the change of the central path by τ."""
         none = np.zeros_like
         return self._solve(1.0 / self.soft_n, self.joints.along(), none(self.unbalanced), none(self.off_gap),
                            none(self.off_slide), none(self.off_reserve), 0.0)  # fmt: skip
 
     def _solve(self, push, forced, unbalanced, off_gap, off_slide, off_reserve, off_target) -> Direction:
-        """Newton's equations, condensed on the free degrees of freedom and bordered by the live load.
+        """Solve Newton's equations, condensed on the free degrees of freedom and bordered by the live load.
 
         push, forced: changes of the normal forces and of the slips while nothing else changes.
         """

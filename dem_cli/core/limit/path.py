@@ -194,7 +194,7 @@ class Walk:
         return Stride(increment, state, found, length, share, self.last.increment if self.last is not None else None)
 
     def far_ahead(self) -> Iterator[tuple[float, float]]:
-        """Displacements far ahead and the loads there, by long increments as far as these lead; the walk stays here."""
+        """Look ahead by long increments, as far as these lead: displacements and loads there; the walk stays here."""
         ahead, leaping = copy(self), True
         ahead.share = 1.0
         most = int((1.0 + self.settings.effort_ahead) * self.problem.factorisations)
@@ -228,7 +228,7 @@ def _follow(
     stop: Callable[[], bool],
     progress: Callable[[float, float], None],
 ) -> None:
-    """Increments from gravity until the load grows no more (status OK), or one fails in every size."""
+    """Follow increments from gravity until the load grows no more (status OK), or one fails in every size."""
     settings, walk = problem.settings.path, Walk(problem, state, stop)
     calm_since, slope = np.inf, np.inf  # displacement from which on the load grows no more
     best: tuple[Stride, float] | None = None  # that of the highest load, and where it led
@@ -264,7 +264,8 @@ def _higher_ahead(path: Path, walk: Walk, scale: float, plateau: float) -> float
 
 
 def _slope(path: Path, settings: PathSettings, load: float, reached: float) -> tuple[float, float]:
-    """Relative growth of the load over that of the displacement, and since where: over an increment of full length."""
+    """Compute the relative growth of the load over that of the displacement, and since where: over a full
+    increment."""
     behind = [k for k, before in enumerate(path.reached) if 0.0 < settings.span * before <= reached]
     if not behind:
         return np.inf, np.inf
@@ -285,7 +286,10 @@ def is_plateau(settings: PathSettings, reached: float, since: float, slope: floa
 
 
 def at_rest(problem: Elastic) -> State:
-    """Blocks where they are drawn, all joints pressed by half a weight: from there dead loads come at once."""
+    """Return the state before gravity: blocks where they are drawn, all joints pressed by half a weight.
+
+    From there dead loads come at once.
+    """
     n, shear = problem.n_points, np.zeros(len(problem.ks_t))
     still, slip = np.zeros(len(problem.columns)), np.zeros(n + len(shear))
     return State(still, 0.0, np.full(n, 0.5), shear, slip, plastic=np.zeros(problem.n_ties))

@@ -77,25 +77,25 @@ def change_of(x: np.ndarray) -> Change:
 
 
 def _element(eigenvalues: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """(x₀, x̄) of the eigenvalues x₀ ∓ x̄·d, (3, n_points)."""
+    """Build the element (x₀, x̄) with eigenvalues x₀ ∓ x̄·d, (3, n_points)."""
     first, second = eigenvalues
     return np.concatenate([0.5 * (first + second)[None], 0.5 * (second - first) * d])
 
 
 def _eigenvalues(element: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """x₀ ∓ x̄·d, (2, n_points)."""
+    """Compute the eigenvalues x₀ ∓ x̄·d, (2, n_points)."""
     along = (d * element[1:]).sum(axis=0)
     return np.stack([element[0] - along, element[0] + along])
 
 
 def _turns(eigenvalues: np.ndarray) -> np.ndarray:
-    """Elements x̄ of which turns as it moves, (n_points,) bool."""
+    """Test whether the direction of elements x̄ turns as they move, (n_points,) bool."""
     first, second = eigenvalues
     return np.abs(second - first) > TURNS * (first + second)
 
 
 def _across(element: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """x̄ across d, (n_points,)."""
+    """Compute the component of x̄ across d, (n_points,)."""
     return d[0] * element[2] - d[1] * element[1]
 
 

@@ -427,7 +427,7 @@ class LoadSearch:
         return failures[-1] if failures and self.large and trials.high is not None else 0
 
     def _taken(self, state: str) -> list[int]:
-        """Steps of the loads that were raised and ended so."""
+        """List the steps of each raised load that ended with this verdict."""
         return [each.steps for each in self.answer.passes if each.kind == "load" and each.state == state]
 
     def _try_crept(self, trials: TrialLoads) -> None:

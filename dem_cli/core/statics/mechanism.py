@@ -70,7 +70,7 @@ def follows(sim: Simulation, held: SavedState, velocities: np.ndarray) -> bool:
 
 
 def moved_blocks(sim: Simulation) -> dict[str, Any]:
-    """Blocks that took part in a collapse, sorted by their distance from where they started."""
+    """Blocks that took part in a collapse, judged by their displacement from the start."""
     shift = np.sqrt((displacements(sim) ** 2).sum(axis=1))
     return named(sim, np.flatnonzero(shift > sim.settings.mechanism.takes_part * shift.max(initial=0.0)))
 
