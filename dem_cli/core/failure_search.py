@@ -104,7 +104,7 @@ def _raised(
 
 def _fails_beside(search: FailureLoad, sim: Simulation, closing: np.ndarray) -> bool:
     """Test whether the structures that failed in fixed geometry are other ones than those whose gaps may close,
-    (n_blocks,) bool: until then these stood with open gaps, so that none closed."""
+    (n_blocks,) bool. Until then these stood with open gaps, so that none closed."""
     before, failing = search.failed_from or search.held, search.failed_state
     if search.status != OK or not search.found or before is None or failing is None:
         return False

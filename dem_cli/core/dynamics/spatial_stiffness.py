@@ -85,8 +85,8 @@ class _Moved:
         self.size = SMALL * float(self.shape.radii.max())
 
     def by(self, chosen: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Measure how some points follow a motion of chosen blocks, (n, 3, 3) each: spin of the frame per spin of
-        the chosen blocks, then motion of the place and spin of the frame per motion of these.
+        """Measure how some points follow a motion of chosen blocks, (n, 3, 3) each. Returned are the spin of the
+        frame per spin of the blocks, then motion of the place and spin of the frame per motion of them.
         """
         spin, shift, turn = (np.zeros((int(points.sum()), 3, 3)) for _ in range(3))
         for axis, unit in enumerate(np.eye(3)):

@@ -151,8 +151,8 @@ def _with_rigid_blocks(
 
 
 def _with_heads(model: Model, by_material: np.ndarray, heads: np.ndarray) -> np.ndarray:
-    """Named joints between two materials: that of their beds, then that in their heads, −1: nothing; where the model
-    does not tell these apart that of both alone, (1 or 2, n_materials, n_materials).
+    """Named joints between two materials, (1 or 2, n_materials, n_materials): that of their beds, then that in
+    their heads, −1: nothing. Where the model does not distinguish these, the first alone.
     """
     return np.stack([by_material, heads[by_material]] if len(model.courses) else [by_material])
 

@@ -241,8 +241,8 @@ def _steps_of_memory(sim: Simulation) -> int:
 
 
 def _steps_of_links(sim: Simulation) -> int:
-    """Length of a ramp in which blocks follow on ties and bars that yield or slide, without swinging past where they
-    rest, which these would remember; 0: there are none."""
+    """Length of a ramp in which blocks follow on ties and bars that yield or slide, without swinging past
+    equilibrium; 0: there are none."""
     relaxation = sim.settings.relaxation
     softest = min((link.softest() for link in sim.links if link.yields()), default=math.inf)
     light = sim.loads.inverse_masses[sim.free, : sim.model.dimension]
