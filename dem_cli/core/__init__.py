@@ -21,7 +21,7 @@ _HOMES = dict.fromkeys(("failure_load", "joints", "limit_load", "shake"), "funct
 
 
 def __getattr__(name: str) -> object:
-    """What is public, imported when it is first asked for."""
+    """Import a public name when it is first used."""
     if name not in _HOMES:
         raise AttributeError(f"module 'dem_cli.core' has no attribute '{name}' (public: {', '.join(__all__)})")
     from importlib import import_module

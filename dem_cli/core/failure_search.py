@@ -1,5 +1,5 @@
-"""Failure search: from gravity under a load that grows, with the kinematics that the structure needs, to the failure
-load, with a second history beside it.
+"""Failure search: the failure load from gravity under a growing load, with the kinematics that the structure
+needs, and a second history beside it.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ def failure_search(
     bound: Callable[[], float | None] = lambda: None,
     rows: bool = True,
 ) -> tuple[FailureLoad, Simulation]:
-    """Gravity and the failure search, with geometry that moves where given joints are too soft to freeze it.
+    """Search for the failure load from gravity, with large displacements where given joints are too soft to freeze
+    geometry.
 
     That is decided before the search, by elastic displacements at the load that limit analysis allows at most; and
     after it once more, by those at failure. Where some of several structures have gaps that may close, geometry is that
@@ -73,8 +74,8 @@ def failure_search(
 def _raised(
     job: Job, sim: Simulation, track: Track, search: FailureLoad, rigid: float | None, max_load: float | None
 ) -> float:
-    """Raises the load of a simulation from gravity until it fails, into `search`; how far given joints let blocks move
-    before failure, in smallest edges, where that says that geometry has to move, else 0.
+    """Raise the load of a simulation from gravity until it fails, into `search`. Returns how far given joints let
+    blocks move before failure, in smallest edges, where that says that geometry has to move, else 0.
 
     rigid: what the same blocks carry on stiff joints, or at most; max_load: as in `failure_search`.
     """
@@ -102,8 +103,8 @@ def _raised(
 
 
 def _fails_beside(search: FailureLoad, sim: Simulation, closing: np.ndarray) -> bool:
-    """Whether what failed on geometry of the start are other structures than those whose gaps may close, (n_blocks,)
-    bool: until then these stood with open gaps, so that none closed."""
+    """Test whether the structures that failed in fixed geometry are other ones than those whose gaps may close,
+    (n_blocks,) bool. Until then these stood with open gaps, so that none closed."""
     before, failing = search.failed_from or search.held, search.failed_state
     if search.status != OK or not search.found or before is None or failing is None:
         return False
@@ -112,25 +113,25 @@ def _fails_beside(search: FailureLoad, sim: Simulation, closing: np.ndarray) -> 
 
 
 def buckling(job: Job) -> Callable[[Simulation], bool]:
-    """Whether a state at rest buckles, for searches."""
+    """Return a test of whether a state at rest buckles, for searches."""
     return lambda sim: buckles(sim, job.budget) is not None
 
 
 def _bound_of_the_start(search: FailureLoad, bound: Callable[[], float | None]) -> float | None:
-    """What rigid blocks carry at most, by limit analysis of the geometry of the start."""
+    """Return the upper bound of the load of rigid blocks, by limit analysis of the geometry of the start."""
     if search.bound is not None:
         return search.bound
     return bound()
 
 
 def _may_move(job: Job, sim: Simulation) -> bool:
-    """Whether geometry may have to move because joints have a stiffness that the case gives."""
+    """Test whether large displacements may be needed because joints have a given stiffness."""
     return sim.properties.given and sim.kinematics == "fixed" and job.request.analysis.kinematics == "auto"
 
 
 def _expected_motion(job: Job, sim: Simulation, limits: RigidLimits) -> float:
-    """Elastic displacement in smallest edges at the load that limit analysis allows at most, where that alone already
-    says that geometry has to move; else 0.
+    """Estimate the elastic displacement, in smallest edges, at the upper bound of limit analysis. It is returned
+    where it alone already says that geometry has to move; else 0.
     """
     if not _may_move(job, sim):
         return 0.0
@@ -140,7 +141,7 @@ def _expected_motion(job: Job, sim: Simulation, limits: RigidLimits) -> float:
 
 
 def _second_history(job: Job, load_search: LoadSearch) -> None:
-    """The path from gravity beside a load that limit analysis leaves open, where it is affordable.
+    """Trace the path from gravity beside a load that limit analysis leaves open, where it is affordable.
 
     Where it ends elsewhere, or nowhere, rested or fell on the way, or a creep came to rest at a higher load, the load
     is raised again in small steps, up to so many blocks: which of the loads a search finds hangs on its steps there,
@@ -169,7 +170,7 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
 
 
 def _changed(load: float, rigid: float, searched: bool, lowered: float) -> list[str]:
-    """A word where joints of the given stiffness carry another load than stiff ones; searched: that was found."""
+    """Warn where joints of the given stiffness carry another load than stiff ones; searched: that was found."""
     if abs(load - rigid) <= lowered * rigid:
         return []
     if not searched:
@@ -179,6 +180,6 @@ def _changed(load: float, rigid: float, searched: bool, lowered: float) -> list[
 
 
 def _resolution(job: Job) -> float:
-    """Width of the bracket that is asked for, over the load."""
+    """Requested width of the bracket, over the load."""
     assert job.request.analysis.resolution is not None
     return job.request.analysis.resolution

@@ -1,4 +1,4 @@
-"""Functions for people who have arrays: joints, limit load, failure load, and the motion of a structure that is shaken.
+"""Functions for people who have arrays: joints, limit load, failure load, and the motion of a shaken structure.
 
 Each takes a `Structure`; what they return are frozen records. docs/core.md shows them.
 """
@@ -39,7 +39,7 @@ MOST_STEPS = 200_000_000  # at which a run gives up
 
 
 class FailureAnswer(NamedTuple):
-    """A failure load, reached from gravity by a load that grew."""
+    """Failure load, reached from gravity by a load that grew."""
 
     status: str  # "ok": both ends of the bracket are proved
     low: float | None  # highest multiplier that was held at rest
@@ -62,9 +62,9 @@ class ShakenMotion(NamedTuple):
 
 
 def joints(law: str = "coulomb", **parameters: Any) -> StiffJoint:
-    """Joints between all blocks: a law of docs/laws by its name, and its parameters by theirs.
+    """Create joints between all blocks: a law of docs/laws by its name, and its parameters by theirs.
 
-    Raises ValueError for a name that is none, and with the key for a value that is not allowed.
+    Raises ValueError for a name that no law has, and with the key for a value that is not allowed.
     """
     from dem_cli.core.laws.registry import LAWS
 
@@ -76,7 +76,7 @@ def joints(law: str = "coulomb", **parameters: Any) -> StiffJoint:
 def limit_load(
     structure: Structure, joint: StiffJoint, load: Sequence[float] | np.ndarray, settings: Settings = DEFAULT
 ) -> LimitLoads:
-    """Limit analysis of the faces that touch: `associated.upper` is what the structure cannot exceed.
+    """Compute the limit load of the faces that touch: `associated.upper` is what the structure cannot exceed.
 
     load: as `Structure.under` takes it. Where friction slides, `non_associated.load` is that of joints that do not
     dilate, by the path from gravity. Raises UsageError for laws that limit analysis does not know.
@@ -95,7 +95,8 @@ def failure_load(
     resolution: float = 1e-3,
     settings: Settings = DEFAULT,
 ) -> FailureAnswer:
-    """The multiplier of a load at which a structure fails: the explicit solver holds `low`, and fails at `high`.
+    """Compute the load multiplier at which a structure fails: the explicit solver carries `low`, and fails at
+    `high`.
 
     load: as `Structure.under` takes it; resolution: width of the bracket over the load.
     """
@@ -123,7 +124,7 @@ def shake(
     rate: float = 200.0,
     settings: Settings = DEFAULT,
 ) -> ShakenMotion:
-    """The motion of a structure from rest, on a base that is shaken, or after blocks were tilted.
+    """Compute the motion of a structure from rest, on a base that is shaken, or after blocks were tilted.
 
     acceleration  of the base, (n,) along x or (n, d), at even intervals [m/s²]; or motions of core/motion
     interval      between its values [s]
@@ -176,18 +177,18 @@ class MotionKeeper(Observer):
         self.stretches: list[Samples] = []
 
     def samples(self, samples: Samples) -> None:
-        """One stretch more."""
+        """Append one more stretch of samples."""
         self.stretches.append(samples)
 
     def joined(self) -> tuple[np.ndarray, np.ndarray]:
-        """Times [s] (n,) and all values (n, n_monitors)."""
+        """Join all stretches: times [s] (n,) and all values (n, n_monitors)."""
         parts = [(each.times, each.monitors) for each in self.stretches]
         times, values = zip(*parts, strict=True)
         return np.concatenate(times), np.concatenate(values)
 
 
 def _request(structure: Structure, joint: StiffJoint, analysis: AnalysisRequest, **more: Any) -> SolverRequest:
-    """What the solvers are asked for, where all joints are alike."""
+    """Build the request to the solvers, where all joints are alike."""
     endless = np.full((1, 2), np.inf)
     of_joints = JointRequest(
         {"joint": joint}, np.zeros((1, 1), np.int64), np.zeros(1, np.int64), endless, endless[:, 0],
@@ -197,7 +198,7 @@ def _request(structure: Structure, joint: StiffJoint, analysis: AnalysisRequest,
 
 
 def _motions(acceleration: np.ndarray | Sequence[Motion], interval: float, dimension: int) -> list[Motion]:
-    """Motions of the base along the axes, from samples at even intervals."""
+    """Build motions of the base along the axes, from samples at even intervals."""
     from dem_cli.core.motion.motion import Motion
     from dem_cli.core.motion.record import record
 
@@ -224,7 +225,7 @@ def _tilted(model: Model, block: int, turn: float | Sequence[float]) -> InitialR
 
 
 def _followed(model: Model, block: str) -> list[MonitorRequest]:
-    """All motions of one block, in the order of its degrees of freedom."""
+    """List monitors of all motions of one block, in the order of its degrees of freedom."""
     d, names = model.dimension, AXES[: model.dimension]
     moves = [MonitorRequest("displacement", name, selected=block) for name in names]
     turning = [None] if d == 2 else list(names)

@@ -74,7 +74,7 @@ class Structure:
         )
 
     def under(self, load: Sequence[float] | np.ndarray) -> Model:
-        """Arrays of the structure with a load that a multiplier acts on.
+        """Return arrays of the structure with a load that a multiplier acts on.
 
         load: a direction (d,), along which each block is pushed by its weight (an earthquake as a static force), or a
         force on the centroid of each block (n_blocks, d) [N]. Raises ValueError for other shapes and for no load.

@@ -25,7 +25,7 @@ SOFTER = 10.0  # times that blocks turn further with points of bending, which ar
 
 
 def bending_doubts(request: SolverRequest, model: Model, settings: Settings = DEFAULT) -> list[str]:
-    """Words for joints whose stiffness is a property, and that have points at their ends although bending counts.
+    """Warn of joints whose stiffness is a property, and that have points at their ends although bending counts.
 
     None where it is given how many points they have, or where blocks hardly turn further with those of bending.
     """

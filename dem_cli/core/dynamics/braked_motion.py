@@ -1,4 +1,4 @@
-"""Braked motion: what mass-proportional damping takes from blocks that rock, slide or fall.
+"""Energy that mass-proportional damping takes from blocks that rock, slide or fall (braked motion).
 
 It resists velocities, whatever makes them: that of rigid blocks on joints that have opened as well as vibration. Who
 asks for a ratio of critical means vibration, and a rocking block that lands late or falls half as far is a surprise.
@@ -30,7 +30,7 @@ class BrakedMotion:
         self._joints = DrawnJoints(sim.model) if sim.damping.mass > 0.0 else None
 
     def look(self, sim: DynamicSimulation) -> None:
-        """Adds what was taken since the last look, where joints were loose then or are now."""
+        """Add the energy that damping took since the last look, where joints were loose then or are now."""
         if self._joints is None:
             return
         loose, taken = self._loosened(self._joints, sim), measures.energy(sim).mass_damping
@@ -39,7 +39,8 @@ class BrakedMotion:
         self._before, self._loose = taken, loose
 
     def _loosened(self, joints: DrawnJoints, sim: DynamicSimulation) -> bool:
-        """Whether a joint has opened or slipped by more than joints deform, or a block without any has moved so far."""
+        """Test whether a joint opened or slipped by more than joints deform, or a block without joints moved so
+        far."""
         least = sim.settings.history.noticeable * sim.smallest
         alone = sim.free[~np.isin(sim.free, joints.places.blocks)]
         ways = [np.abs(measures.displacements(sim)[alone])]
@@ -51,13 +52,14 @@ class BrakedMotion:
         return any(bool((way > least).any()) for way in ways)
 
     def share(self, sim: DynamicSimulation, books: Energy) -> float:
-        """Share of the losses, or of the largest kinetic energy if that is more, that mass damping took [-]."""
+        """Return the share of the losses, or of the largest kinetic energy if that is more, that mass damping took
+        [-]."""
         whole = max(measures.taken(books), sim.most_kinetic)
         return self.energy / whole if whole > 0.0 else 0.0
 
 
 def braked_words(damping: DampingRequest, share: float, runs: str = "") -> str:
-    """A warning for damping that took so much; runs: of which, where there are many."""
+    """Write the warning that mass-proportional damping took so much energy; runs: of which, where there are many."""
     rayleigh = damping.rayleigh
     if rayleigh is None or not rayleigh.mass:
         remedy = "without damping.mass they move freely"

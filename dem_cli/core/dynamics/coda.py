@@ -1,4 +1,5 @@
-"""Coda: how a shaken structure ends. After its motion one that still moves is followed until that is known.
+"""Motion after the end of a ground motion (coda): whether the structure comes to rest, still moves or collapses.
+After its motion one that still moves is followed until that is known.
 
 It has collapsed, is at rest, or has turned back: no block goes beyond what it went to before. At rest is what hardly
 moves and would not in one second more: a block in balance on an edge, or at the turning point of its rocking, is not.
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
 
 class Ending(NamedTuple):
-    """How a structure that was shaken ended, and which block fell first where it collapsed."""
+    """Final state of a structure that was shaken, and the block that fell first where it collapsed."""
 
     how: str  # COLLAPSED, STOOD: at rest; ROCKS: it has turned back; MOVES: not known whether it falls
     block: CollapsedBlock | None = None
@@ -40,17 +41,17 @@ class Ending(NamedTuple):
 
     @property
     def collapsed(self) -> bool | None:
-        """None: not known."""
+        """Test whether the structure collapsed; None where that is not known."""
         return None if self.how == MOVES else self.how == COLLAPSED
 
     @property
     def time(self) -> float | None:
-        """Of the collapse [s]."""
+        """Time of the collapse [s]; None without one."""
         return self.block and self.block.time
 
     @property
     def why(self) -> str:
-        """Which block fell and how, or why nobody knows whether one does; empty where it stands."""
+        """Describe the block that fell, or why the outcome is undecided; empty where the structure stands."""
         if self.block is not None:
             return f"'{self.block.block}' {self.block.how}"
         if self.how == MOVES:
@@ -59,7 +60,7 @@ class Ending(NamedTuple):
 
 
 class _Coda:
-    """How far a structure was followed after its motion."""
+    """Progress of the coda: steps and looks after the motion, and motions since."""
 
     def __init__(self, sim: DynamicSimulation) -> None:
         self.done, self.looks, self.since, self.swings = 0, 0, sim.time, Swings(sim)
@@ -68,9 +69,9 @@ class _Coda:
 
 
 def longest_coda(request: SolverRequest, model: Model) -> float:
-    """How long a structure that still moves after its motion is followed at most [s].
+    """Return the longest time for which a structure is followed after its motion [s].
 
-    What is asked for, else `least_limit`, or longer where it is tall: slow rocking goes by √(R/g), with half the
+    The requested time, else `least_limit`, or longer where it is tall: slow rocking goes by √(R/g), with half the
     height of the free blocks for R.
     """
     given, history = request.shaking.coda, DEFAULT.history
@@ -92,8 +93,9 @@ def ending(
     extremes: Extremes,
     advance: Callable[[int], MotionStretch],
 ) -> Ending:
-    """How `sim` ends, which has come to the end of its motion; `advance` takes it on by so many steps, `stretch` of
-    them or less at a time, whose extremes go to `extremes`. Raises SolverError where it blows up.
+    """Follow a simulation after its motion until it stands, collapses or the time is over. `advance` takes it on
+    by so many steps, `stretch` of them or less at a time, whose extremes go to `extremes`. Raises SolverError
+    where it blows up.
 
     longest: how long it is followed at most [s]; what hardly moves then, for the second that shows whether it rests.
     """
@@ -116,7 +118,7 @@ def ending(
 
 
 def _ended(sim: DynamicSimulation, analysis: ShakingRequest, coda: _Coda, most: int) -> Ending | None:
-    """How it ends, where that is known by now, or nobody looks any longer: after so many steps."""
+    """Return the outcome of the coda once it is known, or after so many steps; None: not yet."""
     history, swings, followed = sim.settings.history, coda.swings, sim.time - coda.since
     block = fallen(sim, analysis)
     if block is not None:
@@ -137,7 +139,7 @@ def _ended(sim: DynamicSimulation, analysis: ShakingRequest, coda: _Coda, most: 
 
 
 def undecided(moving: int, runs: int, coda: float) -> list[str]:
-    """Words for runs of many of which nobody knows whether they fall; none where there are none."""
+    """Write the warning for runs of which it is not known whether they collapse; empty where there are none."""
     if not moving:
         return []
     return [
@@ -147,14 +149,14 @@ def undecided(moving: int, runs: int, coda: float) -> list[str]:
 
 
 def hardly_moves(sim: DynamicSimulation) -> bool:
-    """Whether forces on all blocks balance and next to nothing moves at this instant, which need not last."""
+    """Test whether forces on all blocks balance and next to nothing moves at this instant, which need not last."""
     history = sim.settings.history
     still = sim.unbalanced < history.still
     return bool(still and sim.centred_kinetic_energy() < history.quiet * sim.noticeable_energy)
 
 
 def balances(sim: DynamicSimulation) -> bool:
-    """Whether a block stands on nothing but a corner, or in space an edge, and touches nothing else."""
+    """Test whether a block stands on a corner alone, or in space on an edge, and touches nothing else."""
     record, model, least = contact_record(sim), sim.model, sim.settings.history.edge * sim.smallest
     pressing = np.flatnonzero(record.normal_force > 0.0)
     blocks, points = record.blocks[pressing], record.points[pressing]
@@ -170,7 +172,7 @@ def balances(sim: DynamicSimulation) -> bool:
 
 
 def _on_an_edge(places: np.ndarray, least: float) -> bool:
-    """Whether points (n, d) are no farther than `least` [m] from one place, or in space from one line."""
+    """Test whether points (n, d) are no farther than `least` [m] from one place, or in space from one line."""
     arms = places - places[0]
     lengths = np.sqrt(np.square(arms).sum(axis=1))
     longest = float(lengths.max())
@@ -182,24 +184,24 @@ def _on_an_edge(places: np.ndarray, least: float) -> bool:
 
 
 class Swings:
-    """How far blocks went since the motion ended, look by look: places and turned angles times the radius [m]."""
+    """Motions of blocks since the ground motion ended, look by look: places and turned angles times the radius [m]."""
 
     def __init__(self, sim: DynamicSimulation):
         self.sim, self._looks = sim, [sim.places()[sim.free]]
 
     def look(self) -> None:
-        """Remember where blocks are."""
+        """Record the places and rotations of all blocks."""
         self._looks.append(self.sim.places()[self.sim.free])
 
     def small(self) -> bool:
-        """Whether no block went anywhere."""
+        """Test whether no block moved noticeably."""
         least = self.sim.settings.history.noticeable * self.sim.smallest
         return bool(np.ptp(np.array(self._looks), axis=0).max(initial=0.0) <= least)
 
     def turned_back(self) -> bool:
-        """Whether no block went farther in the second half of the time than in the first, to either side, by what
-        counts; none may be farther out now, and none that went anywhere farther than in all looks before: what slows
-        down towards its balance does.
+        """Test whether the swings of all blocks decay. No block went farther in the second half of the time than
+        in the first, to either side, by what counts. None may be farther out now, and none that went anywhere
+        farther than in all looks before: what slows down towards its balance does.
         """
         middle = len(self._looks) // 2
         if middle == 0:
@@ -218,7 +220,8 @@ class Swings:
         return bool((beyond[-1] <= small).all() and (beyond <= small + history.grows * way).all())
 
     def grew(self) -> bool:
-        """Whether a block went much farther from its first place in the second half of the time than in the first.
+        """Test whether a block went much farther from its first place in the second half of the time than in the
+        first.
 
         What leaves a balance goes as cosh, four times as far in twice the time; what settles or trembles does not.
         """

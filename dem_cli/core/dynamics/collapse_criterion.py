@@ -1,4 +1,4 @@
-"""Collapse criterion: whether a structure that is shaken has collapsed, or its motion is none."""
+"""Collapse criterion: test whether a shaken structure has collapsed, or its energy and numbers are invalid."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class CollapsedBlock(NamedTuple):
-    """The first block that collapsed."""
+    """Block that collapsed first, with the time and how it fell."""
 
     block: str
     time: float  # [s]
@@ -28,7 +28,7 @@ class CollapsedBlock(NamedTuple):
 
 
 def fallen(sim: DynamicSimulation, analysis: ShakingRequest) -> CollapsedBlock | None:
-    """The block that turned or sank farthest beyond the limits of the case or lost its support, where there is one."""
+    """Return the block that turned or sank farthest beyond the limits, or lost its support; None where none did."""
     for values, limits, word, unit in _measured(sim, analysis):
         over = values - limits
         if len(over) and over.max() > 0.0:
@@ -38,13 +38,13 @@ def fallen(sim: DynamicSimulation, analysis: ShakingRequest) -> CollapsedBlock |
 
 
 def fallen_blocks(sim: DynamicSimulation, analysis: ShakingRequest) -> np.ndarray:
-    """Numbers of all blocks that turned or sank beyond the limits of the case or lost their support, ascending."""
+    """Numbers of all blocks that turned or sank beyond the limits or lost their support, ascending."""
     over = [values > limits for values, limits, _, _ in _measured(sim, analysis)]
     return sim.free[np.any(over, axis=0)]
 
 
 def _measured(sim: DynamicSimulation, analysis: ShakingRequest) -> list[tuple[np.ndarray, np.ndarray, str, str]]:
-    """What tells a fall, of the free blocks: values, limits, a word and a unit."""
+    """Compute the measures of a fall of the free blocks: values, limits, a word and a unit."""
     free, d = sim.free, sim.model.dimension
     leans = np.degrees(leans_of(sim.bodies.orientations[free]))
     sank = sim.reference_positions[free, d - 1] - sim.bodies.positions[free, d - 1]
@@ -59,7 +59,7 @@ def _measured(sim: DynamicSimulation, analysis: ShakingRequest) -> list[tuple[np
 
 
 def check_energy(sim: DynamicSimulation, step: TimeStep, energy: Energy | None = None) -> None:
-    """Raises SolverError where the motion makes energy. energy: the books of this instant, if they are known."""
+    """Raises SolverError where the motion creates energy. energy: the energy balance of this instant, if known."""
     energy = energy or measures.energy(sim)
     sim.note_kinetic_energy(energy.kinetic)
     error = closure(sim, energy)
@@ -74,7 +74,7 @@ def check_energy(sim: DynamicSimulation, step: TimeStep, energy: Energy | None =
 
 
 def check_finite(sim: DynamicSimulation) -> None:
-    """Raises SolverError that names time and block where a number is no number."""
+    """Raises SolverError that names time and block where a number is not finite."""
     bad = ~np.isfinite(sim.bodies.velocities).all(axis=1)
     if bad.any():
         name = sim.model.block_ids[int(np.flatnonzero(bad)[0])]
@@ -82,7 +82,7 @@ def check_finite(sim: DynamicSimulation) -> None:
 
 
 def _fastest(sim: DynamicSimulation) -> int:
-    """The block with the largest velocity of a corner."""
+    """Return the block with the largest velocity of a corner."""
     d, velocities = sim.model.dimension, sim.bodies.velocities
     speeds, spins = (np.linalg.norm(part, axis=1) for part in (velocities[:, :d], velocities[:, sim.model.rotations]))
     return int((speeds + sim.shape.radii * spins).argmax())

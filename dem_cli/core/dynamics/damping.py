@@ -1,4 +1,4 @@
-"""[damping] of time histories: what joints and blocks lose, beside friction."""
+"""Damping of time histories ([damping]): energy that joints and blocks lose beside friction."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 
 def damping_of(request: SolverRequest, model: Model, start: JointArrays, settings: Settings = DEFAULT) -> Damping:
-    """Damping in numbers, as it is asked for. Raises CaseError for an unknown block or a restitution out of reach.
+    """Convert the requested damping into coefficients of the solver. Raises CaseError for an unknown block or a
+    restitution out of reach.
 
     start: joints of the undeformed structure.
     """

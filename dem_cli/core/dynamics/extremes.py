@@ -47,13 +47,13 @@ class Extremes:
         self.overlap, self.impacts = 0.0, 0
 
     def see(self, stretch: MotionStretch) -> None:
-        """One stretch more."""
+        """Add the extremes of one more stretch."""
         ends = np.abs(stretch.extremes[:, [slot.HIGHEST, slot.LOWEST]])
         self.values = np.maximum(self.values, np.where(np.isfinite(ends), ends, 0.0).max(axis=1, initial=0.0))
         self.go_on(stretch)
 
     def go_on(self, stretch: MotionStretch) -> None:
-        """One stretch more, whose values do not count: that of a fall."""
+        """Add the overlap and impacts of a stretch whose values do not count: that of a fall."""
         self.overlap, self.impacts = max(self.overlap, stretch.overlap), self.impacts + stretch.impacts
 
 
@@ -69,7 +69,7 @@ class CutReader:
         self.rows: list[list[float]] = []
 
     def look(self) -> None:
-        """At the end of a step."""
+        """Read the forces in cuts at the end of a step."""
         self.rows.append(self.monitors.in_cuts(self.sim))
         self.due += self.every
 
@@ -83,7 +83,8 @@ def shaken_on(
     looker: Looker | None = None,
     with_base: bool = True,
 ) -> MotionStretch:
-    """n_steps of motion: samples every so many steps since the start of the run, extremes of every step.
+    """Advance a simulation by n_steps of ground motion: samples every so many steps since the start, extremes of
+    every step.
 
     with_base: whether the motion of the base at the samples is wanted; else it is left at zero.
     """

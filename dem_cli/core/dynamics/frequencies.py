@@ -57,30 +57,31 @@ class System(NamedTuple):
 
     @property
     def matrix(self) -> csr_array:
-        """L⁻ᵀ K L⁻¹ [1/s2], symmetric; without G positive semidefinite, (n_free, n_free)."""
+        """Dynamic matrix L⁻ᵀ K L⁻¹ [1/s2], symmetric; without G positive semidefinite, (n_free, n_free)."""
         springs = (self.rows.T @ self.rows).tocsr()
         return springs if self.geometric is None else springs + self.geometric
 
     @property
     def stiffness(self) -> csr_array:
-        """K [N/m, N, N m], (n_free, n_free)."""
+        """Stiffness matrix K [N/m, N, N m], (n_free, n_free)."""
         from scipy.sparse import diags_array
 
         roots = diags_array(np.sqrt(self.masses.ravel())) @ _turning(self.axes, self.masses.shape[1]).T
         return (roots.T @ self.matrix @ roots).tocsr()
 
     def motion(self, vectors: np.ndarray) -> np.ndarray:
-        """L⁻¹ y: displacements and rotation vectors of the free blocks [m, rad], (..., n_free_blocks, n_dof)."""
+        """Convert scaled motions y to L⁻¹ y: displacements and rotation vectors of the free blocks [m, rad], (...,
+        n_free_blocks, n_dof)."""
         found = vectors / np.sqrt(self.masses)
         return _with_rotations(found, self.axes)
 
     def reduced(self, forces: np.ndarray) -> np.ndarray:
-        """L⁻ᵀ f, of forces and moments on the free blocks [N, N m], (n_free_blocks, n_dof)."""
+        """Convert forces and moments f on the free blocks [N, N m], (n_free_blocks, n_dof), to L⁻ᵀ f."""
         return _with_rotations(forces, self.axes.swapaxes(1, 2)) / np.sqrt(self.masses)
 
 
 class Highest(NamedTuple):
-    """The fastest vibration of a structure, and what has it."""
+    """Highest natural frequency of a structure, with the block and the joint that its mode strains most."""
 
     frequency: float  # ω [rad/s]; 0 where no joint holds any block
     exact: bool  # False: not an eigenvalue but a bound above it
@@ -89,7 +90,7 @@ class Highest(NamedTuple):
 
 
 class Modes(NamedTuple):
-    """The slowest vibrations of a structure, slowest first."""
+    """Lowest natural frequencies of a structure with mode shapes and effective masses, lowest first."""
 
     frequencies: np.ndarray  # [Hz], (n,)
     shapes: np.ndarray  # [m, rad], scaled to φᵀ M φ = 1 kg m2; zero for fixed blocks, (n, n_blocks, n_dof)
@@ -98,7 +99,7 @@ class Modes(NamedTuple):
     loose: np.ndarray  # blocks that take part in these, (n_loose,)
 
     def agreed(self) -> Modes:
-        """The same rounded to digits that all processors agree on, beside the largest part of each shape."""
+        """Round the modes to digits that all processors agree on, beside the largest part of each shape."""
         masses = agreed_beside(self.effective_masses, self.effective_masses.max(initial=0.0))
         shapes = [agreed_beside(shape, np.abs(shape).max(initial=0.0)) for shape in self.shapes]
         return self._replace(
@@ -130,7 +131,7 @@ def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = 
 
 
 def with_springs(found: System, springs: csr_array) -> System:
-    """The same with further stiffness of the free degrees of freedom [N/m, N, N m], (n_free, n_free), symmetric."""
+    """Add stiffness of the free degrees of freedom [N/m, N, N m], (n_free, n_free), symmetric."""
     per_mass = _per_mass(found.masses, found.axes)
     more = (per_mass.T @ springs @ per_mass).tocsr()
     return found._replace(geometric=more if found.geometric is None else (found.geometric + more).tocsr())
@@ -243,7 +244,7 @@ def _own_springs(model: Model) -> csr_array:
 
 
 def _rigid_motions(model: Model) -> csr_array:
-    """From the free degrees of freedom of blocks that deform to those of rigid ones, (n_free_rigid, n_free)."""
+    """Build the matrix from degrees of freedom of deformable blocks to those of rigid ones, (n_free_rigid, n_free)."""
     from scipy.sparse import eye_array, kron
 
     one = eye_array(model.rotations.stop, model.rotations.stop + model.n_modes)
@@ -251,7 +252,8 @@ def _rigid_motions(model: Model) -> csr_array:
 
 
 def principal_directions(model: Model, orientations: np.ndarray | None = None) -> np.ndarray:
-    """From the principal axes of each block to those of the world, (n_blocks, r, r); in the plane both are one."""
+    """Rotation matrices from the principal axes of each block to the axes of the world, (n_blocks, r, r); 1 in the
+    plane."""
     if not len(model.principal_axes):
         return np.ones((model.n_blocks, 1, 1))
     own = matrices(model.principal_axes)
@@ -259,7 +261,7 @@ def principal_directions(model: Model, orientations: np.ndarray | None = None) -
 
 
 def _per_mass(masses: np.ndarray, axes: np.ndarray) -> csr_array:
-    """L⁻¹ of System."""
+    """Build the matrix L⁻¹ of System."""
     from scipy.sparse import diags_array
 
     return _turning(axes, masses.shape[1]) @ diags_array(1.0 / np.sqrt(masses.ravel()))
@@ -296,12 +298,12 @@ def highest_frequency(sim: Simulation) -> float:
 
 
 def highest_of(found: System) -> float:
-    """The same of springs and masses."""
+    """Compute the highest natural frequency ω [rad/s] of springs and masses."""
     return _largest(found)[0]
 
 
 def limiting(sim: Simulation) -> Highest:
-    """The highest natural frequency, and the block and the joint that its mode moves and strains most."""
+    """Find the highest natural frequency, and the block and the joint that its mode moves and strains most."""
     found = system(sim)
     frequency, vector = _largest(found)
     if frequency == 0.0:
@@ -340,7 +342,7 @@ def _largest(found: System) -> tuple[float, np.ndarray | None]:
 
 
 def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
-    """The `count` lowest natural frequencies above 0 with their shapes; fewer where there are not so many.
+    """Compute the `count` lowest natural frequencies above 0 with their shapes; fewer where there are not so many.
 
     The sign of a shape: it follows a base that moves along +x, or along +y where that excites it more.
     """
@@ -368,7 +370,7 @@ def modes(found: System, count: int, dimension: int, n_blocks: int) -> Modes:
 
 
 def _lowest(matrix: csr_array, count: int, settings: FrequencySettings) -> tuple[np.ndarray, np.ndarray]:
-    """All eigenvalues up to 0, made exactly so, and the `count` lowest above, with vectors (n, n_values)."""
+    """Compute all eigenvalues up to 0, set exactly to 0, and the `count` lowest above, with vectors (n, n_values)."""
     n = matrix.shape[0]
     largest, asked = float(_gershgorin(matrix).max(initial=0.0)), count
     while True:
@@ -384,7 +386,7 @@ def _lowest(matrix: csr_array, count: int, settings: FrequencySettings) -> tuple
 
 
 def _shift_invert(matrix: csr_array, count: int, shift: float) -> tuple[np.ndarray, np.ndarray]:
-    """The `count` lowest eigenvalues in ascending order, with their vectors (n, count)."""
+    """Compute the `count` lowest eigenvalues in ascending order, with their vectors (n, count)."""
     from scipy.sparse.linalg import ArpackError, eigsh
 
     try:
@@ -407,7 +409,7 @@ def _signs(shapes: np.ndarray, shares: np.ndarray, mass: float, equal: float) ->
 
 
 def start_vector(n: int) -> np.ndarray:
-    """A vector for iterations that no mode is orthogonal to, always the same, (n,)."""
+    """Return a fixed start vector for iterations that no mode is orthogonal to, (n,)."""
     return np.random.default_rng(0).standard_normal(n)
 
 

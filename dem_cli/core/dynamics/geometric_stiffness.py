@@ -1,4 +1,4 @@
-"""Geometric stiffness: how contact forces turn and shift when blocks with forces between them move.
+"""Geometric stiffness: change of contact forces that turn and shift when the blocks between them move.
 
 In space: spatial_stiffness.py. In the plane:
 
@@ -37,7 +37,8 @@ if TYPE_CHECKING:
 def geometric_stiffness(
     model: Model, joints: Joints, geometry: JointGeometry, contacts: Contacts, bodies: Bodies
 ) -> csr_array:
-    """Of the free degrees of freedom [N/m, N, N m], (n_free, n_free), symmetric; frames and points must be current."""
+    """Assemble the geometric stiffness [N/m, N, N m], (n_free, n_free), symmetric; frames and points must be
+    current."""
     from scipy.sparse import coo_array
 
     local = SECOND_DERIVATIVES[model.dimension](model, joints, geometry, contacts, bodies)
@@ -49,7 +50,7 @@ def geometric_stiffness(
 
 
 def _in_plane(model: Model, joints: Joints, geometry: PlanarGeometry, contacts: Contacts, bodies: Bodies) -> np.ndarray:
-    """Second derivatives times forces, (n_points, 6, 6): x, y, θ of a, then of b."""
+    """Second derivatives times forces in the plane, (n_points, 6, 6): x, y, θ of a, then of b."""
     blocks = joints.blocks[joints.owners]
     frames = directions(joints, 2)
     forces = np.column_stack([contacts.normal, contacts.shear])
@@ -70,7 +71,7 @@ def _in_plane(model: Model, joints: Joints, geometry: PlanarGeometry, contacts: 
 
 
 def _in_space(model: Model, joints: Joints, geometry: JointGeometry, contacts: Contacts, bodies: Bodies) -> np.ndarray:
-    """The same, (n_points, 12, 12): x, rotation vector of a, then of b."""
+    """Second derivatives times forces in space, (n_points, 12, 12): x, rotation vector of a, then of b."""
     forces = np.column_stack([contacts.normal, contacts.shear])
     along = np.einsum("pd,pdk->pk", forces, directions(joints, 3))
     arms = joints.points[:, None] - bodies.positions[joints.blocks[joints.owners]]

@@ -19,7 +19,7 @@ AHEAD, LONGEST = 16, 65_536  # requests that are worked out at once, and rows at
 
 
 class RowsAhead:
-    """Rows of tables without end, asked for one stretch behind the other and worked out for many of these at once.
+    """Rows of endless tables, read one stretch behind the other and computed for many of these at once.
 
     rows: the rows from a number on, so many, of all tables; each row whatever comes with it.
     """
@@ -29,7 +29,7 @@ class RowsAhead:
         self.tables: tuple[np.ndarray, ...] = ()
 
     def stretch(self, first: int, n: int) -> tuple[np.ndarray, ...]:
-        """The rows first, first + 1 ..., n of them."""
+        """Return n rows from a number on."""
         if not self.first <= first <= first + n <= self.end:
             more = max(n, min(AHEAD * n, LONGEST))
             self.tables, self.first, self.end = self.rows(first, more), first, first + more
@@ -38,7 +38,7 @@ class RowsAhead:
 
 
 class GroundMotion:
-    """The sum of all motions on each support.
+    """Ground motion of each support: the sum of all motions that act on it.
 
     Motions without `blocks` move the base. A support that motions name follows these alone; where all supports have
     the same ones, they move the base.
@@ -92,8 +92,8 @@ class GroundMotion:
         return float(product(acceleration, np.array(self.base[0].direction)))
 
     def stretch(self, start: float, n_steps: int, dt: float) -> Ground:
-        """The ground over n_steps steps from the time `start` [s]: the frame is accelerated by as much as it gains
-        in velocity over each step, so that no impulse is lost between samples.
+        """Compute the ground motion over n_steps steps from the time `start` [s]. The frame is accelerated by as
+        much as it gains in velocity over each step, so that no impulse is lost between samples.
 
         Times are counted in steps: where a stretch starts changes no bit of the motion.
         """
@@ -103,7 +103,7 @@ class GroundMotion:
         return Ground(gained, self.moving, velocities)
 
     def _table(self, dt: float, every: int, rows: Callable[[int, int], tuple[np.ndarray, ...]]) -> RowsAhead:
-        """What was worked out ahead for steps of dt; every: 0 for the steps themselves."""
+        """Return the table computed ahead for steps of dt; every: 0 for the steps themselves."""
         if (dt, every) not in self._ahead:
             self._ahead = {key: table for key, table in self._ahead.items() if key[0] == dt}  # of one run at a time
             self._ahead[dt, every] = RowsAhead(rows)

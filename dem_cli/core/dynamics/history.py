@@ -51,7 +51,7 @@ TAKERS = ("friction", "dashpots", "mass_damping", "maxwell", "damping")  # field
 
 @dataclass
 class _Shaking:
-    """How far the motion has come."""
+    """Progress of a time history: steps done, and the block that fell."""
 
     end: float  # [s]; a collapse brings it nearer
     done: int = 0  # steps
@@ -59,7 +59,7 @@ class _Shaking:
 
 
 class TimeHistory:
-    """One run: a structure under one motion of the ground."""
+    """Time history of a structure under one motion of the ground."""
 
     LASTING = frozenset(("job", "ground", "request", "damping", "sim", "step", "track", "snapshots", "braked"))
 
@@ -76,7 +76,7 @@ class TimeHistory:
         self.braked = BrakedMotion(self.sim)
 
     def _simulation(self) -> tuple[DynamicSimulation, TimeStep]:
-        """The simulation, with laws that know the time step."""
+        """Build the simulation, with laws that depend on the time step, and choose the step."""
         analysis, model = self.request.shaking, self.job.model
 
         def make(step: float) -> DynamicSimulation:
@@ -100,17 +100,17 @@ class TimeHistory:
 
     @property
     def still(self) -> bool:
-        """Whether the ground moved and no block did, by more than joints deform."""
+        """Test whether the ground moved while no block moved by more than joints deform."""
         return self.ground.peak > 0.0 and self.farthest < self.sim.settings.history.noticeable * self.sim.smallest
 
     def run(self) -> Outcome:
-        """Rest, first motion, shaking; the summary."""
+        """Run rest, first motion and shaking; returns the summary."""
         if not self.start():
             return self._outcome({"status": FALLS, "collapsed": True, "collapse_time": 0.0, "ending": COLLAPSED})
         return self._outcome(self._shake())
 
     def start(self) -> bool:
-        """Rest under dead loads, then the first motion; False where there is no rest."""
+        """Find rest under dead loads, then apply the first motion; False where there is no rest."""
         sim, request = self.sim, self.request
         if request.shaking.settle:
             self.track.observer.progress("gravity", 0.0, 0.0, None)
@@ -129,7 +129,8 @@ class TimeHistory:
         return True
 
     def _stands(self) -> str:
-        """State under dead loads. Raises SolverError where neither equilibrium nor a fall is found."""
+        """Settle the structure under its dead loads and test whether it stands. Raises SolverError where neither
+        equilibrium nor a fall is found."""
         steps = min(self.request.shaking.max_steps, self.job.settings.history.settling)
         try:
             return stand(self.sim, Budget(steps)).state
@@ -140,7 +141,7 @@ class TimeHistory:
             ) from error
 
     def _shake(self) -> dict[str, Any]:
-        """The motion until its end, or until a collapse was followed long enough, then how it ends."""
+        """Follow the motion to its end, or a collapse for long enough, then the coda."""
         total = max(1, math.ceil(self.duration / self.step.step))
         if total > self.request.shaking.max_steps:
             raise SolverError(
@@ -151,7 +152,7 @@ class TimeHistory:
 
     @stage
     def _through_motion(self, total: int) -> CollapsedBlock | None:
-        """Stretches of the motion, of so many steps in all; returns the block that fell first."""
+        """Advance through the stretches of the motion, of so many steps in all; returns the block that fell first."""
         history, sim, dt = self.job.settings.history, self.sim, self.step.step
         every = self._every()
         stretch = max(1, math.ceil(min(total / history.rows, history.longest_look / dt)))
@@ -190,7 +191,7 @@ class TimeHistory:
             self.snapshots.collapsed(motion.end)
 
     def _ended(self, fallen: CollapsedBlock | None) -> dict[str, Any]:
-        """How it ended."""
+        """Return the summary of the outcome: collapse, its time and blocks, or rest."""
         sim = self.sim if fallen is not None else deepcopy(self.sim)
         end = Ending(COLLAPSED, fallen) if fallen is not None else self._followed(sim)
         found: dict[str, Any] = {"collapsed": end.collapsed, "collapse_time": None}
@@ -200,7 +201,8 @@ class TimeHistory:
         return found | {"ending": end.how, "at_rest": end.still, "followed": end.followed}
 
     def _followed(self, sim: DynamicSimulation) -> Ending:
-        """How a copy ends after the motion: books and frames are of the motion alone, peaks and samples of all."""
+        """Follow a copy after the motion; energy balance and frames are of the motion alone, peaks and samples of
+        all."""
         analysis, dt, motion_ends = self.request.shaking, self.step.step, sim.time
         history, longest = sim.settings.history, longest_coda(self.request, sim.model)
         every, waiting = self._every(), list[MotionStretch]()  # what shows a structure at rest is not worth keeping
@@ -245,20 +247,20 @@ class TimeHistory:
         return seen
 
     def _tell(self, seen: MotionStretch, coda: bool) -> None:
-        """The results of a stretch."""
+        """Pass the samples of a stretch to the observer."""
         self.track.observer.samples(Samples(seen.times, seen.base, seen.values, seen.extremes, coda))
 
     def _look(self) -> None:
-        """The books of this instant; stops a run that makes energy."""
+        """Record the energy balance of this instant; stops a run that creates energy."""
         sim = self.sim
         row = self.track.write("shaking")
         self.braked.look(sim)
         check_energy(sim, self.step, row.energy)
 
     def _outcome(self, found: dict[str, Any]) -> Outcome:
-        """The summary, audited."""
+        """Build the audited summary with its warnings."""
         sim = self.sim
-        fell = found["status"] == FALLS  # in pseudo-time, damped so that it may come to rest: nothing of the case
+        fell = found["status"] == FALLS  # in pseudo-time, damped to come to rest: no part of the motion
         shares = {} if fell else energy_shares(measures.energy(sim))
         if shares.get("local", 0.0) > self.job.settings.doubts.governs:
             self.job.warnings.append(
@@ -295,7 +297,8 @@ class TimeHistory:
         })  # fmt: skip
 
     def _doubt_what_follows(self) -> None:
-        """Where the books closed up to a collapse and do not beyond: blocks that fall flat hit larger faces."""
+        """Warn where the energy balance closed up to a collapse and does not beyond: fallen blocks hit larger
+        faces."""
         allowed = self.job.settings.doubts.closure
         if self.closed is not None and abs(self.closed) <= allowed < abs(closure(self.sim)):
             self.job.warnings.append(
@@ -305,7 +308,7 @@ class TimeHistory:
 
 
 def damping_of_start(request: SolverRequest, model: Model, settings: Settings = DEFAULT) -> Damping:
-    """Damping as it is asked for, for the joints that it starts with. Raises CaseError as `damping_of` does."""
+    """Compute the requested damping for the joints of the start. Raises CaseError as `damping_of` does."""
     properties = joint_properties(request, model, settings.stiffness.dynamics)
     rest = bodies_at_rest(model, origin_of(model))
     start = joints_of_start(model, rest, properties, smallest_edge(model))
@@ -315,20 +318,21 @@ def damping_of_start(request: SolverRequest, model: Model, settings: Settings = 
 def shaken(
     request: SolverRequest, model: Model, damping: Damping, step: float = math.inf, settings: Settings = DEFAULT
 ) -> DynamicSimulation:
-    """A structure before its first step, with laws that know the time step [s]; nothing is compiled for it."""
+    """Build the simulation of a structure before its first step, with laws that know the time step [s]; compiles
+    nothing."""
     properties = joint_properties(request, model, settings.stiffness.dynamics, step)
     return DynamicSimulation(model, law_of(request), properties, damping, settings)
 
 
 def energy_shares(energy: Energy) -> dict[str, float]:
-    """What each way of losing energy took of all that was lost; nothing where nothing was."""
+    """Return the share of the dissipated energy that each mechanism took; empty where none was lost."""
     taken = {WAYS.get(name, name): getattr(energy, name) for name in TAKERS}
     total = sum(taken.values())
     return {name: value / total for name, value in taken.items() if value != 0.0} if total > 0.0 else {}
 
 
 def duration_of(request: SolverRequest, ground: GroundMotion) -> float:
-    """How long to look [s]. Raises CaseError where neither the request nor a motion says it."""
+    """Return the duration of the time history [s]. Raises CaseError where neither the request nor a motion says it."""
     duration = request.shaking.duration or ground.duration
     if duration <= 0.0:
         message = "missing; must be a number > 0 ([s]) where no [motion] says how long the ground moves"

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def set_initial(initial: Sequence[InitialRequest], sim: Simulation) -> None:
-    """Moves the blocks of all requests, one after the other."""
+    """Move the blocks of all requests, one after the other."""
     rest = measures.largest_overlap(sim)
     for one in initial:
         chosen = _chosen(sim.model, one)
@@ -41,7 +41,7 @@ def _chosen(model: Model, one: InitialRequest) -> np.ndarray:
 
 
 def tilt(sim: Simulation, chosen: np.ndarray, turn: np.ndarray | float) -> None:
-    """Turns blocks as one about the corner or edge on which they then stand.
+    """Turn blocks as one about the corner or edge on which they then stand.
 
     turn: counter-clockwise, in space axis times angle (3,) [rad].
     """
@@ -68,8 +68,8 @@ def _check_apart(initial: Sequence[InitialRequest], sim: Simulation, rest: float
 
 
 def _pivot(sim: Simulation, chosen: np.ndarray, turn: np.ndarray) -> np.ndarray:
-    """Where the chosen blocks touch others, the outermost point on the side to which they tilt (d,): to the left in the
-    plane the leftmost one.
+    """Find the point about which chosen blocks tilt (d,). It touches other blocks, outermost on the side to which
+    they tilt: to the left in the plane the leftmost one.
     """
     record = measures.contact_record(sim)
     ours = np.isin(record.blocks, chosen)

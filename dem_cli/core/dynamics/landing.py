@@ -1,4 +1,4 @@
-"""Landing of loose blocks: how fast one that no joint holds vibrates on any one of its faces, once it has come down.
+"""Landing of loose blocks: vibration frequency of a block without joints on any one of its faces.
 
 What holds nothing limits no step, and a pebble that lands on a step made for large blocks makes energy.
 """
@@ -70,7 +70,7 @@ def _by_rotations(arms: np.ndarray) -> np.ndarray:
 
 
 def _areas(model: Model, faces: np.ndarray) -> np.ndarray:
-    """Of faces; in the plane of edges, times the thickness of their block [m²], (n,)."""
+    """Return the areas of faces; in the plane of edges, times the thickness of their block [m²], (n,)."""
     if model.dimension == 3:
         return model.faces.areas[faces]
     start, end = model.vertices[model.topology.ends[faces]].swapaxes(0, 1)

@@ -12,7 +12,7 @@ from scipy.sparse import csr_array
 from dem_cli.core.kernels.records import INTEGRATED, Joints
 
 MASS = (np.ones((3, 3)) + np.eye(3)) / 12.0  # ∫ N Nᵀ dA over the area of a triangle
-LEAST = 1e-12  # of the largest pivot: what is less is none
+LEAST = 1e-12  # of the largest pivot: what is less counts as zero
 
 
 def root_of_stiffness(joints: Joints, overlaps: np.ndarray) -> csr_array:

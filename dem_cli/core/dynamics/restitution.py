@@ -1,4 +1,4 @@
-"""What a rocking block loses when it lands: Housner's ratio, and the dashpot that gives a wanted one.
+"""Restitution of a rocking block on landing: Housner's ratio, and the dashpot that gives a wanted one.
 
 With dashpots that do not pull, the ratio r of angular velocities after and before landing falls with the damping
 towards that of Housner's rigid block, from above. A wanted r is sought by rocking the block, alone on its joint, as
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class RockingBlock(NamedTuple):
-    """A block on the joint that it rocks on."""
+    """Block on the joint that it rocks on."""
 
     block: int
     support: int  # the block below
@@ -36,19 +36,20 @@ class RockingBlock(NamedTuple):
     foot: np.ndarray  # points of the joint, from its centroid [m], (n, d)
 
     def rocks(self) -> Rocking:
-        """Where it turns from and to."""
+        """Return the pivot points of the block and the axis of its turn."""
         return ROCKING[self.foot.shape[1]](self.foot)
 
 
 class Rocking(NamedTuple):
-    """A way in which a block rocks."""
+    """Pivot points and axis of a rocking block."""
 
     ends: np.ndarray  # where it turns, from its centroid and across the axis of its turn [m], (2, d)
     axis: np.ndarray  # of the turn by which it stands on the first of these, unit, (r,)
 
 
 def reference_block(model: Model, start: JointArrays, asked: DampingRequest) -> RockingBlock:
-    """The block whose restitution is meant, by its name, else the heaviest free one with a foot on a support.
+    """Choose the block whose restitution is meant: by its name, else the heaviest free one with a foot on a
+    support.
 
     start: joints of the undeformed structure. Raises CaseError where there is none: a block on a corner or an edge
     turns about that alone, and does not rock.
@@ -76,7 +77,7 @@ def reference_block(model: Model, start: JointArrays, asked: DampingRequest) -> 
 
 
 def _on_its_joint(model: Model, start: JointArrays, chosen: int) -> RockingBlock | None:
-    """A block on the lowest of its joints; None: it has none."""
+    """Return a block on the lowest of its joints; None where it has no joint."""
     joints, gaps = start.joints, start.contacts.gaps
     mine = np.flatnonzero((joints.blocks == chosen).any(axis=1))
     if not len(mine):
@@ -95,7 +96,7 @@ def _on_its_joint(model: Model, start: JointArrays, chosen: int) -> RockingBlock
 
 
 def _is_broad(foot: np.ndarray) -> bool:
-    """Whether a foot is seen from above as more than a point, in space as more than a line; foot: (n, d) [m]."""
+    """Test whether a foot seen from above is more than a point, in space more than a line; foot: (n, d) [m]."""
     seen = foot[:, :-1] - foot[0, :-1]
     lengths = np.hypot.reduce(seen, axis=1)
     broad = float(lengths.max())
@@ -106,12 +107,13 @@ def _is_broad(foot: np.ndarray) -> bool:
 
 
 def _in_plane(foot: np.ndarray) -> Rocking:
-    """From one end of a joint to the other."""
+    """Return the rocking from one end of a joint to the other."""
     return Rocking(foot[[0, -1]], np.ones(1))
 
 
 def _in_space(foot: np.ndarray) -> Rocking:
-    """About the side over which the block falls first, to what is furthest from it; foot: (n, 3)."""
+    """Return the rocking about the side over which the block falls first, to what is furthest from it; foot: (n,
+    3)."""
     from scipy.spatial import ConvexHull
 
     outline = foot[ConvexHull(foot[:, :2]).vertices]  # counter-clockwise: outside is on the right of a side
@@ -133,8 +135,9 @@ ROCKING = {2: _in_plane, 3: _in_space}
 
 
 def housner(model: Model, reference: RockingBlock) -> float:
-    """Ratio of angular velocities of a rigid block that turns from one end of its joint to the other without slip or
-    bounce: (I + m r·r') / (I + m r'²), of moments about the new end (Housner 1963; 1 − 1.5 sin²α for a rectangle).
+    """Compute Housner's ratio of angular velocities of a rigid block that turns from one end of its joint to the
+    other without slip or bounce. It is (I + m r·r') / (I + m r'²), of moments about the new end (Housner 1963; 1 −
+    1.5 sin²α for a rectangle).
     """
     (old, new), axis = reference.rocks()
     mass, along = model.masses[reference.block], product(axis, principal_directions(model)[reference.block])
@@ -145,7 +148,8 @@ def housner(model: Model, reference: RockingBlock) -> float:
 def fraction_of(
     request: SolverRequest, model: Model, start: JointArrays, settings: Settings = DEFAULT
 ) -> tuple[float, str]:
-    """Fraction of critical that gives the wanted restitution, and words about it. Raises CaseError out of reach."""
+    """Compute the fraction of critical damping that gives the wanted restitution, and a description of it. Raises
+    CaseError out of reach."""
     restitution = settings.restitution
     reference = reference_block(model, start, request.damping)
     rigid, name = housner(model, reference), model.block_ids[reference.block]
@@ -175,7 +179,7 @@ def fraction_of(
 def rocked(
     request: SolverRequest, model: Model, reference: RockingBlock, fraction: float, settings: Settings = DEFAULT
 ) -> float:
-    """Ratio of angular velocities when the block lands, from the heights before and after it."""
+    """Measure the ratio of angular velocities when the block lands, from the heights before and after it."""
     from dem_cli.core.dynamics.ground import GroundMotion
     from dem_cli.core.dynamics.initial_state import tilt
     from dem_cli.core.dynamics.time_step import time_step

@@ -1,4 +1,5 @@
-"""Stiffness of "auto" joints in time histories: so stiff that blocks rock as rigid ones, within a budget of steps.
+"""Stiffness of "auto" joints in time histories: stiff enough that blocks rock as rigid ones, within a budget of
+steps.
 
 It belongs to the structure: the budget is one per √(height/g) of motion, the time in which a structure rocks, so that
 the duration, the number of runs and the scale of a model change no joint.
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 
 
 class RockingStiffness(NamedTuple):
-    """What was chosen for "auto" joints, and why."""
+    """Stiffness chosen for "auto" joints, with the rotation and the work that decided it."""
 
     ratio: float  # kn·h/W
     turn: float  # ε, by which blocks turn under their weight sideways [rad]; 0 where nothing is "auto"
@@ -43,16 +44,16 @@ class RockingStiffness(NamedTuple):
     automatic: bool  # False: all stiffnesses are given
 
     def softer(self, factor: float) -> RockingStiffness:
-        """The same on softer joints."""
+        """Return the stiffness reduced by a factor."""
         return RockingStiffness(self.ratio / factor, self.turn * factor, self.work / math.sqrt(factor), self.automatic)
 
     def applied(self, settings: Settings) -> Settings:
-        """Settings with which "auto" joints have it."""
+        """Return the settings with this stiffness of "auto" joints."""
         return replace(settings, stiffness=replace(settings.stiffness, dynamics=self.ratio))
 
     @property
     def doubt(self) -> str:
-        """Words for joints that had to stay too soft."""
+        """Write the warning for joints that had to stay too soft."""
         return (
             f"joints are softer than rocking asks for: blocks turn by {self.turn:.1g} rad when their weight acts "
             "sideways; stiffer joints would take too many steps, or digits"
@@ -60,8 +61,8 @@ class RockingStiffness(NamedTuple):
 
 
 def rocking_stiffness(request: SolverRequest, model: Model, settings: Settings = DEFAULT) -> RockingStiffness:
-    """The softest joints on which blocks turn by no more than wanted; softer where these would take too many steps,
-    but never softer than settings.stiffness.dynamics.
+    """Choose the softest joints on which blocks turn by no more than wanted. They are softer where these would
+    take too many steps, but never softer than settings.stiffness.dynamics.
     """
     softest, rocking = settings.stiffness.dynamics, settings.rocking
     automatic = bool(joint_properties(request, model, softest).rigid.any())
@@ -127,7 +128,7 @@ def _joints(request: SolverRequest, model: Model, ratio: float) -> tuple[Joints,
 
 
 def rigid_but(joints: Joints, points: np.ndarray) -> Joints:
-    """The same with all points but these (n_points,) bool so stiff that they do not count."""
+    """Make all points but these (n_points,) bool so stiff that they do not count."""
     if points.all():
         return joints
     factor = np.where(points, 1.0, 1e3 * max(1.0, float(joints.kn.max() / joints.kn[~points].min())))
@@ -135,7 +136,8 @@ def rigid_but(joints: Joints, points: np.ndarray) -> Joints:
 
 
 def _round_off(model: Model, joints: Joints) -> float:
-    """What the last digit of a place does to the force on a block, over its weight; the largest of all."""
+    """Estimate the round-off of contact forces: last digit of a place times stiffness, over the weight; the
+    largest."""
     free = ~model.fixed
     d = model.dimension
     places = model.vertices + (model.centroids - origin_of(model))[model.vertex_blocks]
@@ -147,7 +149,7 @@ def _round_off(model: Model, joints: Joints) -> float:
 
 
 def _rocking_time(request: SolverRequest, model: Model) -> float:
-    """√(height/g) of all that can move [s]; one second without gravity."""
+    """Return the rocking time √(height/g) of all that can move [s]; one second without gravity."""
     free = ~model.fixed[model.vertex_blocks]
     height = float(np.ptp((model.vertices + model.centroids[model.vertex_blocks])[free, -1]))
     return math.sqrt(height / request.gravity) if request.gravity > 0.0 else 1.0

@@ -24,18 +24,18 @@ if TYPE_CHECKING:
 
 
 class EvenTimes:
-    """Snapshots as a case asks for them: at even times from a start to an end, each once."""
+    """Snapshots at even times from a start to an end, each once."""
 
     def __init__(self, start: float, end: float, count: int):
         self.times, self.shown = np.linspace(start, end, max(count, 2)), 0 if start > 0.0 else 1
 
     def due(self, time: float, _since: float, _still: bool) -> bool:
-        """Whether a snapshot was due up to now [s] since the last one."""
+        """Test whether a snapshot was due up to now [s] since the last one."""
         before, self.shown = self.shown, max(self.shown, int((self.times <= time).sum()))
         return self.shown > before
 
     def left(self, _since: float, _still: bool) -> float:
-        """None is waited for: every look may be the one."""
+        """Return 0: every look may be due."""
         return 0.0
 
 
@@ -46,11 +46,12 @@ class Intervals:
         self.interval, self.interval_still, self.end = interval, max(interval, interval_still), end
 
     def due(self, time: float, since: float, still: bool) -> bool:
-        """Whether the last one is long ago [s], or this is the end; still: no block has moved visibly until now."""
+        """Test whether the last snapshot is long ago [s], or this is the end; still: no block has moved visibly
+        until now."""
         return since >= self._wanted(still) or time >= self.end
 
     def left(self, since: float, still: bool) -> float:
-        """How long it is until the next one [s]."""
+        """Return the time until the next snapshot [s]."""
         return self._wanted(still) - since
 
     def _wanted(self, still: bool) -> float:
@@ -58,7 +59,7 @@ class Intervals:
 
 
 class Snapshots:
-    """The frames that a time history keeps, in the order of time; the simulation calls `look` along the way.
+    """Frames of a time history, in the order of time; the simulation calls `look` along the way.
 
     wanted: as many at even times as a case asks for; None: as many as the motion needs.
     """
@@ -75,7 +76,7 @@ class Snapshots:
         self.room = max(self.settings.bytes // bytes_of(sim), self.settings.fewest)  # frames that may still be kept
 
     def begin(self, duration: float, sampled: int) -> None:
-        """Of a motion that lasts `duration` [s]; the frame of its start is kept by others.
+        """Begin the snapshots of a motion that lasts `duration` [s]; the frame of its start is kept by others.
 
         sampled: steps from one sample of the monitors to the next. Looks fall on samples, so that both see one peak.
         """
@@ -91,14 +92,14 @@ class Snapshots:
         self._look_again_after(self.close)
 
     def collapsed(self, end: float) -> None:
-        """A collapse is followed from now until `end` [s]."""
+        """Follow a collapse with snapshots from now until `end` [s]."""
         self.stage, self.ahead, left = "collapse", None, end - self.sim.time
         self.spaced = self.close
         self.times = self._until(end, left, max(self.per_second, self.settings.per_second_of_collapse))
         self.look()
 
     def _until(self, end: float, left: float, per_second: float) -> EvenTimes | Intervals:
-        """What is due until an end that is so far off [s]."""
+        """Choose the times of snapshots until an end that is so far off [s]."""
         if self.wanted is None:
             return Intervals(max(1.0 / per_second, left / max(self.room, 1)), 1.0 / self.settings.per_second_still, end)
         return EvenTimes(end - left, end, self.wanted if self.stage == "shaking" else self.wanted // 2)
@@ -126,19 +127,20 @@ class Snapshots:
         self._look_again_after(self.close * max(min(looks, due), 1))
 
     def _look_again_after(self, steps: int) -> None:
-        """The next look, on a sample."""
+        """Set the next look, on a sample."""
         done = round(self.sim.time / self.sim.dt)
         self.due = done - done % self.close + steps
 
     def _times_as_far(self) -> int:
-        """How many times as far apart looks may be where nothing is near: a part of the time between snapshots."""
+        """Compute how much wider looks may be spaced where nothing is near: a part of the time between snapshots."""
         if self.wanted is not None:
             return 1
         between = self.settings.between / (self.per_second * self.close * self.sim.dt)
         return max(1, min(int(between), self.settings.spaced))
 
     def _looks_ahead(self, moved: float, away: float, turned: float) -> int:
-        """How many times `close` on no block goes farther than ever, or by a swing, at twice the rate seen last."""
+        """Estimate the looks, in units of `close`, before a block goes farther than ever or by a swing, at twice
+        the last rate."""
         (step, *before), now = self.seen, (moved, away, turned)
         self.seen = self.sim.steps, *now
         passed, looks = max(self.sim.steps - step, 1) / self.close, self.spaced // self.close
@@ -158,7 +160,7 @@ class Snapshots:
         return self.sim.bodies.orientations.take(self.sim.free, axis=0)
 
     def _swung(self, away: float, turned: float) -> bool:
-        """Whether a block moved or turned so far since the last snapshot that it would be lost between even times.
+        """Test whether a block moved or turned so far since the last snapshot that even times would lose it.
 
         away: how far one moved at most [m]; turned: how far one turned [rad].
         """
@@ -177,7 +179,8 @@ def _largest(displacements: np.ndarray) -> float:
 
 
 def frequency_of(ground: GroundMotion, duration: float) -> float:
-    """Mean frequency of the sign of the velocity of the ground (Rice): σ(a) / 2πσ(v), of its fastest motion [Hz]."""
+    """Compute the mean frequency of the sign of the ground velocity (Rice): σ(a) / 2πσ(v), of its fastest motion
+    [Hz]."""
     found = 0.0
     for motion in [*ground.base, *(motion for motions in ground.own.values() for motion in motions)]:
         times = np.linspace(motion.start, min(motion.duration, max(duration, motion.start)), 4001)
@@ -194,5 +197,5 @@ def size_of(sim: DynamicSimulation) -> float:
 
 
 def bytes_of(sim: DynamicSimulation) -> int:
-    """About what a frame takes on disk, both files together."""
+    """Estimate the size of a frame on disk [bytes], both files together."""
     return 2000 + 160 * len(sim.contacts.normal) + 90 * sim.model.n_blocks + 40 * len(sim.model.vertices)

@@ -1,4 +1,4 @@
-"""Geometric stiffness in space: how contact forces turn and shift when blocks with forces between them move.
+"""Geometric stiffness in space: change of contact forces that turn and shift when the blocks between them move.
 
 With F the force on b at a point and A, B the arms of the point from both centroids, the motion of b against a there is
 
@@ -35,20 +35,20 @@ if TYPE_CHECKING:
     from dem_cli.core.model.model import Model
 
 SMALL = (
-    1e-5  # rad, and shares of the radii of blocks: what is of second order is nothing yet, and a place that goes with
+    1e-5  # rad, and shares of the radii of blocks: what is of second order is negligible, and a place that goes with
 )
 # one block on one side of a rim and with the other one beyond it is half way between, as in a vibration
 
 
 class Attachment(NamedTuple):
-    """How contact points go along with block b; with block a they do so by the rest of 1."""
+    """Rotation and translation of contact points per motion of block b; block a has the rest of 1."""
 
     spins: np.ndarray  # of normal and tangents per spin of b, S_b, (n_points, 3, 3)
     follows: np.ndarray  # of the point per motion of b there, R, (n_points, 3, 3)
 
 
 def attachment(model: Model, joints: Joints, geometry: JointGeometry, contacts: Contacts, bodies: Bodies) -> Attachment:
-    """How the points of joints go along with their blocks, seen by moving half of the blocks at a time.
+    """Find how contact points follow the motion of their blocks, by moving half of the blocks at a time.
 
     Of the blocks of a joint one is moved and the other one is not, for one digit at least of their binary numbers.
     """
@@ -85,8 +85,8 @@ class _Moved:
         self.size = SMALL * float(self.shape.radii.max())
 
     def by(self, chosen: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of some points, (n, 3, 3) each: spin of the frame per spin of the chosen blocks, motion of the place and
-        spin of the frame per motion of these.
+        """Measure how some points follow a motion of chosen blocks, (n, 3, 3) each. Returned are the spin of the
+        frame per spin of the blocks, then motion of the place and spin of the frame per motion of them.
         """
         spin, shift, turn = (np.zeros((int(points.sum()), 3, 3)) for _ in range(3))
         for axis, unit in enumerate(np.eye(3)):
@@ -120,7 +120,8 @@ def _spin_between(after: tuple[np.ndarray, np.ndarray], before: tuple[np.ndarray
 
 
 def second_derivatives(forces: np.ndarray, arms: np.ndarray, attached: Attachment) -> np.ndarray:
-    """Of the work of contact forces, (n_points, 12, 12), symmetric: x, rotation vector of a, then of b.
+    """Compute second derivatives of the work of contact forces, (n_points, 12, 12), symmetric: x, rotation vector
+    of a, then of b.
 
     forces: on b [N], (n_points, 3); arms: from the centroids of a and b [m], (n_points, 2, 3).
     """
@@ -141,7 +142,7 @@ def second_derivatives(forces: np.ndarray, arms: np.ndarray, attached: Attachmen
 
 
 def cross_matrices(vectors: np.ndarray) -> np.ndarray:
-    """Matrices of v ×, (n, 3, 3)."""
+    """Build the matrices of v ×, (n, 3, 3)."""
     found = np.zeros((len(vectors), 3, 3))
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         found[:, k, j], found[:, j, k] = vectors[:, i], -vectors[:, i]

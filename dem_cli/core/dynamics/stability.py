@@ -1,4 +1,5 @@
-"""Stability of an equilibrium where geometry moves: a column past its load of buckling balances and does not stand.
+"""Stability of an equilibrium with large displacements: a column beyond its buckling load balances and does not
+stand.
 
 The tangent stiffness of the points that carry, with that of their forces and of loads that follow blocks, has a
 negative eigenvalue there. Points that are just open are left out of it, and may close: so the blocks are moved a little
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 
 def buckles(sim: Simulation, budget: Budget) -> int | None:
-    """The block that moves most in the shape in which an equilibrium buckles; None: it is stable.
+    """Return the block that moves most in the shape in which an equilibrium buckles; None: it is stable.
 
     sim: at rest; left as it was. Only where geometry moves on joints of a given stiffness, the only ones that say
     anything of buckling, and that have no profile: blocks roll over its sides and come to rest again. Else None.
@@ -47,7 +48,7 @@ def buckles(sim: Simulation, budget: Budget) -> int | None:
 
 
 def standing(sim: Simulation, track: Track, budget: Budget) -> str:
-    """Dead loads, as `settle` puts them on; "ok", or the status of a structure that falls or buckles under them."""
+    """Settle the structure under its dead loads; "ok", or the status of one that falls or buckles under them."""
     if settle(sim, track, budget).state != "equilibrium":
         return FALLS
     return "ok" if buckles(sim, budget) is None else BUCKLED
@@ -86,7 +87,7 @@ def _unstable_shape(sim: Simulation) -> np.ndarray | None:
 
 
 def _of_following_loads(sim: Simulation, found: System) -> csr_array:
-    """Stiffness of loads that go along with blocks, by how they change as these turn, (n_free, n_free)."""
+    """Stiffness of loads that turn with their blocks, (n_free, n_free)."""
     from scipy.sparse import coo_array
 
     assert sim.following is not None
@@ -114,7 +115,7 @@ def _of_following_loads(sim: Simulation, found: System) -> csr_array:
 
 @stage
 def _goes_on(sim: Simulation, shape: np.ndarray, budget: Budget) -> bool:
-    """Whether blocks that are moved a little along a shape go on along it under the same loads."""
+    """Test whether blocks that are moved a little along a shape go on along it under the same loads."""
     settings, relaxation = sim.settings.stability, sim.settings.relaxation
     little = settings.pushed * sim.smallest
     motion = little * shape[:, : sim.model.rotations.stop].copy()

@@ -1,4 +1,5 @@
-"""Supports of blocks: which faces carried each block at the start, and which blocks have slid off or fallen past them.
+"""Supports of blocks: faces that carried each block at the start, and blocks that have slid off or fallen past
+them.
 
 A block that slides on its support stands, and so does one that sinks with it. One that sank beside it has fallen,
 however small the step down: its support is gone.
@@ -49,7 +50,7 @@ def carriers_of(sim: DynamicSimulation) -> Carriers:
 
 
 def lost_supports(sim: DynamicSimulation, least: np.ndarray) -> np.ndarray:
-    """How far free blocks sank that have lost their support [m], (n_free,); 0 of all others.
+    """Compute the depth by which free blocks sank that have lost their support [m], (n_free,); 0 of all others.
 
     least: how far a block sinks at least [m], (n_free,). One has lost its support that sank so far below what carried
     it and does not touch these faces any more, or stood above them and now leans on others, its centre beside them.
@@ -87,7 +88,7 @@ def _touched(sim: DynamicSimulation, block: int) -> np.ndarray:
 
 
 def _go_on(sim: DynamicSimulation, touched: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Which faces (n,) go on in the plane of one of `faces`, as the next stone of a ramp does, (n,) bool."""
+    """Find faces (n,) that continue the plane of one of `faces`, as the next stone of a ramp does, (n,) bool."""
     near = sim.settings.history.touches * sim.smallest
     planes, others = ([_corners(sim, face) for face in some] for some in (faces, touched))
     return np.array([any(_off_plane(plane, other) <= near for plane in planes) for other in others], bool)
@@ -100,7 +101,7 @@ def _corners(sim: DynamicSimulation, face: int) -> np.ndarray:
 
 
 def _off_plane(corners: np.ndarray, points: np.ndarray) -> float:
-    """How far the farthest of some points is from the plane of a face by its corners, or in 2D from its line [m]."""
+    """Compute the largest distance of points from the plane of a face by its corners, or in 2D from its line [m]."""
     rest, off = corners - corners[0], points - corners[0]
     for _ in range(corners.shape[1] - 1):
         along = rest[np.square(rest).sum(axis=1).argmax()]
@@ -110,7 +111,7 @@ def _off_plane(corners: np.ndarray, points: np.ndarray) -> float:
 
 
 def _above(sim: DynamicSimulation, block: int, faces: np.ndarray) -> bool:
-    """Whether the centre of a block is above what these faces cover together in plan."""
+    """Test whether the centre of a block is above the area that these faces cover together in plan."""
     d = sim.model.dimension
     if not len(faces):
         return False

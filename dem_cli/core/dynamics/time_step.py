@@ -1,4 +1,4 @@
-"""The time step of a time history: a share of the largest stable one, 2/ω_max, and what limits it."""
+"""Time step of a time history: a share of the largest stable one, 2/ω_max, and what limits it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DEFAULT_MARGIN = 0.5  # of the limit: joints that blocks meet later may be stiff
 
 
 class TimeStep(NamedTuple):
-    """A stable time step."""
+    """Stable time step, its limit and the blocks that set it."""
 
     step: float  # [s]
     limit: float  # the largest stable one, 2/ω_max [s]
@@ -28,7 +28,7 @@ class TimeStep(NamedTuple):
 
     @property
     def cause(self) -> str:
-        """What sets the limit, in words."""
+        """Describe which vibration limits the time step."""
         if not self.blocks:
             return "nothing can vibrate"
         named = " on ".join(f"'{name}'" for name in self.blocks)
@@ -39,7 +39,7 @@ class TimeStep(NamedTuple):
 def time_step(
     sim: Simulation, margin: float = DEFAULT_MARGIN, forced: float | None = None, stiffer: float = 1.0
 ) -> TimeStep:
-    """The step to use: `forced` [s] where it is given, else margin · 2/ω_max.
+    """Compute the time step: `forced` [s] where it is given, else margin · 2/ω_max.
 
     stiffer: what Maxwell elements multiply frequencies by. Dashpots do not come into it: they are implicit
     (docs/numerics.md). All contact points in the list count as

@@ -1,4 +1,4 @@
-"""Error of elastic vibrations at a time step: how far their history drifts from that of continuous time.
+"""Error of elastic vibrations at a time step: drift of their history from that of continuous time.
 
 The explicit step makes of a vibration exp(λ t), λ = −ζω + iω√(1 − ζ²), one with z = exp(λ' Δt) where dashpots act at
 the mean velocity of the step:
@@ -34,12 +34,12 @@ if TYPE_CHECKING:
 AIM = 0.8  # of the allowed error, that a step is chosen for
 MOST_SAMPLES = 20_000  # of a motion
 MOST_TOGETHER = 20  # motions that are worked out at once
-MOST_RATIO = 0.9  # of damping that is told apart: beyond, nothing vibrates
+MOST_RATIO = 0.9  # of damping that is distinguished: beyond, nothing vibrates
 FADES = 200.0  # exponents that a stretch of samples goes through at most: exp of them is a number
 
 
 class VibrationError(NamedTuple):
-    """The mode whose history errs most."""
+    """Vibration mode whose history errs most."""
 
     share: float = 0.0  # error over the largest displacement of all modes, under the motion that is worst
     frequency: float = 0.0  # of this mode [Hz]
@@ -56,10 +56,11 @@ class Swing(NamedTuple):
 def refined(
     found: TimeStep, sim: DynamicSimulation, motions: Sequence[Motion], duration: float, analysis: ShakingRequest
 ) -> tuple[TimeStep, str]:
-    """The step at which elastic vibrations are right, and words for what is still wrong, or nothing.
+    """Refine the time step until elastic vibrations are right; returns it and a warning of what is still wrong, or
+    "".
 
-    A step or a margin that the case gives stays; so does one of joints that are all as stiff as the program chose,
-    whose vibration is none of the structure.
+    A step or a margin that is given stays; so does one of joints that are all as stiff as the program chose,
+    whose vibration is not the structure's.
     """
     settings = sim.settings.history
     if not (found.held and motions) or bool(sim.properties.rigid.all()):
@@ -83,7 +84,7 @@ def refined(
 
 
 def vibration_error(sim: DynamicSimulation, motions: Sequence[Motion], step: float, duration: float) -> VibrationError:
-    """Error that the time step makes in elastic vibrations, under each motion alone for `duration` [s].
+    """Compute the error of elastic vibrations at the time step, under each motion alone for `duration` [s].
 
     Joints that touch now act.
     """
@@ -131,19 +132,20 @@ def _sampled_alike(motions: Sequence[Motion]) -> Iterator[tuple[np.ndarray, list
 
 
 def rates_of(omegas: np.ndarray, ratios: np.ndarray) -> np.ndarray:
-    """λ of oscillators with ω [rad/s] and damping ratios below 1 [1/s], (n,) complex."""
+    """Compute λ of oscillators with ω [rad/s] and damping ratios below 1 [1/s], (n,) complex."""
     return omegas * (1j * np.sqrt(1.0 - ratios**2) - ratios)
 
 
 def rates_at(step: float, omegas: np.ndarray, ratios: np.ndarray) -> np.ndarray:
-    """Eigenvalues λ of oscillators in explicit steps of `step` [s], whose period is too short: [1/s], (n,) complex."""
+    """Compute λ of oscillators in explicit steps of `step` [s], whose period is too short: [1/s], (n,) complex."""
     middle, lost = 1.0 - 0.5 * (step * omegas) ** 2, ratios * omegas * step
     z = (middle + 1j * np.sqrt(np.maximum(1.0 - lost**2 - middle**2, 0.0))) / (1.0 + lost)
     return (functions.log(np.abs(z)) + 1j * functions.arctan2(z.imag, z.real)) / step
 
 
 def swing(values: np.ndarray, step: float, rest: float, omegas: np.ndarray, ratios: np.ndarray) -> Swing:
-    """Exact response of oscillators with ω [rad/s] and damping ratios to ground motions that rest after their end.
+    """Compute the exact response of oscillators with ω [rad/s] and damping ratios to ground motions that rest
+    after their end.
 
     values: acceleration [m/s²], linear between samples `step` [s] apart, (n_motions, n_samples); rest: time after [s].
     """

@@ -1,1 +1,1 @@
-"""The engine: a structure that advances step by step; knows no analysis."""
+"""Simulation engine: a structure that advances step by step; knows no analysis."""

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def warnings(request: SolverRequest, sims: list[Simulation], found: dict[str, Any]) -> list[str]:
-    """Doubts about the answer `found`, the worst first; where there is none, how to get one."""
+    """Warn of doubts about the answer `found`, the worst first; where there is none, say how to get one."""
     said, doubts = [], sims[0].settings.doubts
     worst = max((closure(sim) for sim in sims), key=abs)
     overlap = max(measures.largest_overlap(sim) / sim.smallest for sim in sims)
@@ -48,7 +48,7 @@ def warnings(request: SolverRequest, sims: list[Simulation], found: dict[str, An
 
 
 def _reweighted(request: SolverRequest, sims: list[Simulation]) -> list[str]:
-    """Energy that came or went as blocks that slide over each other changed the areas of contact points."""
+    """Warn of energy that came or went as sliding blocks changed the areas of contact points."""
     net, total = max((reweighting_shares(sim) for sim in sims), key=max_of)
     allowed = sims[0].settings.doubts.reweighted
     if max_of((net, total)) <= allowed:
@@ -63,12 +63,12 @@ def _reweighted(request: SolverRequest, sims: list[Simulation]) -> list[str]:
 
 
 def max_of(shares: tuple[float, float]) -> float:
-    """The larger of a net amount by size and of the sum of all amounts."""
+    """Return the larger of a net amount by size and of the sum of all amounts."""
     return max(abs(shares[0]), shares[1])
 
 
 def weightless(sim: Simulation) -> list[str]:
-    """The first block whose own loads are lost beside those of the others, by which equilibrium is judged."""
+    """Warn of the first block whose own loads are lost beside those of the others, by which equilibrium is judged."""
     dead, live = sim.model.dead_loads[sim.free], sim.loads.live[sim.free]
     d = sim.model.dimension
     light = np.flatnonzero(np.sqrt((dead[:, :d] ** 2).sum(axis=1)) < own_weights(dead, live, d))
@@ -80,13 +80,13 @@ def weightless(sim: Simulation) -> list[str]:
 
 
 def unproven(request: SolverRequest, sim: Simulation) -> bool:
-    """Whether some block of a static analysis weighs too little beside others for anything to be proven of it."""
+    """Test whether some block of a static analysis is too light beside others to prove anything about it."""
     weighs = bool(sim.loads.dead[sim.free, : sim.model.dimension].any())
     return weighs and not request.in_seconds and bool(weightless(sim))
 
 
 def _shear(sim: Simulation) -> list[str]:
-    """Joints that only a user can have asked for: "auto" has ks = kn."""
+    """Warn of a ratio ks/kn outside the usual range; "auto" joints have ks = kn."""
     properties = sim.properties
     ratios = properties.ks / properties.kn
     low, high = sim.settings.doubts.shear_low, sim.settings.doubts.shear_high
@@ -99,7 +99,7 @@ def _shear(sim: Simulation) -> list[str]:
 
 
 def _lumped(sim: Simulation) -> list[str]:
-    """Joints that are stiff beside the blocks whose deformation they carry: how these bend and bulge is lost."""
+    """Warn of joints that are stiff beside the blocks whose deformation they carry: bending and bulging are lost."""
     return [
         f"blocks deform {times}: lumped into the joints they give way too much, by some 2 % at 0.4 times, 3 % at 1, "
         "6 % at 3"
@@ -108,7 +108,7 @@ def _lumped(sim: Simulation) -> list[str]:
 
 
 def unbending(request: SolverRequest, sim: Simulation) -> list[str]:
-    """Joints that are stiff beside blocks of uniform strain, which do not bend."""
+    """Warn of joints that are stiff beside blocks of uniform strain, which do not bend."""
     free = np.repeat(sim.properties.rigid[:, None], 2, axis=1)
     compliance = block_compliance(sim.model, np.repeat(request.joints.uniform[:, None], 2, axis=1), free)
     return [
@@ -119,7 +119,7 @@ def unbending(request: SolverRequest, sim: Simulation) -> list[str]:
 
 
 def _stiff_beside(sim: Simulation, compliance: BlockCompliance | None, least: float) -> list[str]:
-    """Joints that are more than `least` times as stiff as what blocks give way, and how many times."""
+    """Describe joints that are more than `least` times as stiff as their blocks, and by how many times."""
     if compliance is None:
         return []
     shares, named = measures.shares_of_blocks(sim, compliance), sim.properties.between(sim.model, sim.joints.blocks)
@@ -133,7 +133,7 @@ def _stiff_beside(sim: Simulation, compliance: BlockCompliance | None, least: fl
 
 
 class _Worth(NamedTuple):
-    """Strength in bending of a joint with few points over that of its whole section, about the side of a rectangle."""
+    """Bending strength of a joint with few points over that of its whole section, about the side of a rectangle."""
 
     cracked: float  # brittle in tension, at most, at any normal force
     crushed: tuple[float, float]  # perfectly plastic in compression, from 1/20 to 19/20 of what crushes it
@@ -149,7 +149,7 @@ NINE = _Worth(1.35, (0.87, 1.15))  # in space, points = 3
 
 
 def _cracking(request: SolverRequest, sim: Simulation) -> list[str]:
-    """Joints that crack or are crushed at so few points that they are stronger or weaker in bending than a section."""
+    """Warn of joints that crack or crush at so few points that their bending strength is not that of a section."""
     space, found = sim.contacts.shear.shape[1] == 2, []
     for name, layout in zip(sim.properties.names, sim.properties.plane, strict=True):
         if layout.points == SECTION:
@@ -173,7 +173,7 @@ def _cracking(request: SolverRequest, sim: Simulation) -> list[str]:
 
 
 def _leaning_automatically(request: SolverRequest, sim: Simulation) -> list[str]:
-    """Where even "auto" joints as stiff as round-off allows let a structure lean by what counts."""
+    """Warn where even "auto" joints as stiff as round-off allows let a structure lean noticeably."""
     if sim.kinematics == "fixed":
         return []
     resolution = request.analysis.resolution
@@ -187,7 +187,7 @@ def _leaning_automatically(request: SolverRequest, sim: Simulation) -> list[str]
 
 
 def _leaning(request: SolverRequest, sim: Simulation, moved: float | None) -> list[str]:
-    """Warning of a load on soft joints, where geometry moves because the case says so and stiff ones were not tried.
+    """Warn of a load on soft joints, where large displacements are given and stiff joints were not tried.
 
     A block that rocks on a face without tension carries b/h (1 − 2c/3b − hθ/b), which is largest where c = 3hθ: its
     centre has then moved by u = hθ/2, and 6 u/b of the load is lost. Points at the ends of a joint lose u/b alone.
@@ -205,7 +205,7 @@ def _leaning(request: SolverRequest, sim: Simulation, moved: float | None) -> li
 
 
 def _known(found: dict[str, Any]) -> str:
-    """What is known of a load that was not found: neither side of so wide a bracket is a failure load."""
+    """Describe what is known of a failure load that was not found: neither side of so wide a bracket is one."""
     low, high = found.get("failure_load_bracket", [None, None])
     bound = found.get("limit_analysis", {}).get("associated")
     if low is None and high is None:
@@ -221,7 +221,7 @@ def _known(found: dict[str, Any]) -> str:
 
 
 def _advice(request: SolverRequest, sim: Simulation, found: dict[str, Any]) -> str:
-    """What is known and what may be done where a search ended without an answer."""
+    """Describe what is known and what may be done where a search ended without an answer."""
     known = _known(found)
     weightless = not sim.loads.dead[sim.free].any()
     ways = ["give the blocks weight, or dead loads: nothing presses them together"] if weightless else []

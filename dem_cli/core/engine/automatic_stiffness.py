@@ -1,4 +1,5 @@
-"""Automatic stiffness, kn = "auto", where geometry moves: how much of its load a structure loses by leaning (P-Δ).
+"""Automatic stiffness, kn = "auto", with large displacements: share of its load that a structure loses by leaning
+(P-Δ).
 
 A lateral load λ turns the joint on level j by M/K, the weight W above it moves with that, and its moment comes on top
 of the first. To first order a stack of blocks on joints of rotational stiffness K loses the share
@@ -31,12 +32,12 @@ if TYPE_CHECKING:
 
 
 def ratio_of(sim: Simulation) -> float:
-    """kn·h/W of its "auto" joints; 0: it has none."""
+    """Return the stiffness ratio kn·h/W of the "auto" joints of a simulation; 0: it has none."""
     return float(sim.properties.kn[sim.properties.rigid].max(initial=0.0) / stiffness_scale(sim.model))
 
 
 def static_ratio(model: Model, kinematics: str, stiffness: AutomaticStiffness) -> float:
-    """kn·h/W of "auto" joints of a static analysis; where geometry moves it may have to be more (`needed_ratio`).
+    """Return kn·h/W of "auto" joints of a static analysis; large displacements may need more (`needed_ratio`).
 
     Where it is that of the start, joints only have to be stiff: a weight sinks by h/(kn·h/W), and coordinates of a
     structure of size L tell 2e-16 L apart. Beside ties and bars they are stiff enough when these give way by far more:
@@ -60,7 +61,7 @@ def static_ratio(model: Model, kinematics: str, stiffness: AutomaticStiffness) -
 
 
 def needed_ratio(sim: Simulation, resolution: float | None = None) -> float:
-    """kn·h/W on which a structure like this leans no further than settings say, at least its own.
+    """Return the kn·h/W on which a structure like this leans no further than settings say, at least its own.
 
     resolution: of the load, relative; None: no load is sought. Not stiffer than round-off allows: coordinates are known
     to 2e-16 of the size L of the structure, so that forces on a block with a smallest edge s balance to about
@@ -79,7 +80,8 @@ def needed_ratio(sim: Simulation, resolution: float | None = None) -> float:
 
 
 def shown_closure(sim: Simulation, resolution: float | None = None) -> float:
-    """Share of their closure that "auto" joints may show in an equilibrium; resolution: of a load, relative."""
+    """Return the share of their closure that "auto" joints may show in an equilibrium; resolution: of a load,
+    relative."""
     relief = sim.settings.relief
     if resolution is None or sim.leans == 0.0:
         return relief.shown
@@ -87,7 +89,8 @@ def shown_closure(sim: Simulation, resolution: float | None = None) -> float:
 
 
 def leaning(sim: Simulation) -> float:
-    """Share of its failure load that the structure most prone to it loses by leaning over "auto" joints (see above)."""
+    """Estimate the share of its failure load that the most sensitive structure loses by leaning over "auto" joints
+    (see above)."""
     model, blocks, y = sim.model, sim.joints.blocks, sim.model.dimension - 1
     if not (len(blocks) and sim.properties.rigid.any()):
         return 0.0
@@ -151,7 +154,7 @@ def _along(kn: np.ndarray, arms: np.ndarray, starts: np.ndarray, axis: np.ndarra
 
 
 def _share(level: np.ndarray, weights: np.ndarray, heights: np.ndarray, beds: Beds) -> float:
-    """Of one structure: level, weight [N] and height [m] of its blocks, (n,) each."""
+    """Compute the share of load lost by one structure: level, weight [N] and height [m] of its blocks, (n,) each."""
     turned, overturning = 0.0, 0.0
     for lower in range(int(level.max(initial=0))):
         above, here = level > lower, beds.lower == lower

@@ -1,4 +1,4 @@
-"""The budget of a run: how many solver steps it may still take."""
+"""Budget of a run: the number of solver steps that it may still take."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Budget:
     left: int
 
     def spend(self, steps: int, doing: str) -> None:
-        """Takes steps off. Raises SolverError when more are spent than there were."""
+        """Take steps off the budget. Raises SolverError when more are spent than there were."""
         self.left -= steps
         if self.left < 0:
             raise SolverError(f"gave up {doing}: all steps of analysis.max_steps are used up")

@@ -31,39 +31,39 @@ class Clock(Observer):
         self.observer, self.stages = observer, observer.stages
 
     def frame(self, frame: Frame) -> None:
-        """Hands on a frame, off the clock."""
+        """Pass a frame to the observer, off the clock."""
         begun = time.perf_counter()
         self.observer.frame(frame)
         self.observing += time.perf_counter() - begun
 
     def row(self, row: HistoryRow) -> None:
-        """Hands on a row, off the clock."""
+        """Pass a row to the observer, off the clock."""
         begun = time.perf_counter()
         self.observer.row(row)
         self.observing += time.perf_counter() - begun
 
     def samples(self, samples: Samples) -> None:
-        """Hands on samples, off the clock."""
+        """Pass samples to the observer, off the clock."""
         begun = time.perf_counter()
         self.observer.samples(samples)
         self.observing += time.perf_counter() - begun
 
     def runs(self, rows: Sequence[RunRow]) -> None:
-        """Hands on the table of all runs."""
+        """Pass the table of all runs to the observer."""
         self.observer.runs(rows)
 
     def structure(self, model: Model) -> None:
-        """Hands on another structure."""
+        """Pass another structure to the observer."""
         self.observer.structure(model)
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """Hands on where the run stands, off the clock."""
+        """Pass the progress of the run to the observer, off the clock."""
         begun = time.perf_counter()
         self.observer.progress(stage, load, displacement, fraction)
         self.observing += time.perf_counter() - begun
 
     def compiled(self, make: Callable[[], AnySimulation]) -> AnySimulation:
-        """A simulation with its kernels compiled or loaded off the clock, and all else on it."""
+        """Make a simulation with its kernels compiled or loaded off the clock, and all else on it."""
         compilation = Compilation(lambda: self.progress("compiling (once)", 0.0, 0.0, None))
         with compilation.heard():
             sim = make()
@@ -75,7 +75,7 @@ class Clock(Observer):
         return sim
 
     def imported(self, module: str) -> None:
-        """Imports a module that only some runs need, off the clock."""
+        """Import a module that only some runs need, off the clock."""
         begun = time.perf_counter()
         import_module(module)
         self.compiling += time.perf_counter() - begun
@@ -86,7 +86,7 @@ class Clock(Observer):
 
 
 def duration_words(value: float) -> str:
-    """Two figures are more than such an estimate is worth."""
+    """Format a duration with two figures: more than such an estimate is worth."""
     for limit, unit, name in ((0.1, 1e-3, "ms"), (120.0, 1.0, "s"), (7200.0, 60.0, "min")):
         if value < limit:
             return f"{value / unit:.2g} {name}"

@@ -30,16 +30,16 @@ from dem_cli.interrupts import look
 
 
 class Looker(Protocol):
-    """Who looks at a simulation while it is shaken."""
+    """Observer of a simulation while it is shaken."""
 
     due: int  # step of the motion, at the end of which is the next look
 
     def look(self) -> None:
-        """At the end of a step; changes nothing."""
+        """Observe the end of a step; changes nothing."""
 
 
 class DynamicSimulation(Simulation):
-    """A simulation that can be shaken: first quasi-static as any other, from `begin` on in seconds.
+    """Dynamic simulation: first quasi-static as any other, from `begin` on in seconds.
 
     damping     what the joints and blocks lose (dynamics/damping.py)
     """
@@ -65,12 +65,12 @@ class DynamicSimulation(Simulation):
         self.takes_back = False  # springs that press at the start go on pressing
 
     def __getstate__(self) -> dict[str, Any]:
-        """As that of every simulation."""
+        """Return the state of a copy, without compiled code."""
         return super().__getstate__() | {"_shaken": (None,), "_shake": None}
 
     @property
     def n_damped(self) -> int:
-        """Numbers that dashpots and Maxwell elements remember of each contact point."""
+        """Number of values that dashpots and Maxwell elements store for each contact point."""
         return self.model.dimension * (1 + len(self.damping.elements)) if self.damping.in_joints else 0
 
     @property
@@ -81,7 +81,8 @@ class DynamicSimulation(Simulation):
     # -- from pseudo-time to time ------------------------------------------------------------------
 
     def begin(self, dt: float) -> None:
-        """From here on a step takes dt [s]: real masses, no limit of speed, books that start anew."""
+        """Begin the motion in time: a step takes dt [s], masses are real, speed is free, the energy balance starts
+        anew."""
         model = self.model
         self.rest()
         self.real, self.dt, self.time = True, dt, 0.0
@@ -103,26 +104,26 @@ class DynamicSimulation(Simulation):
         self.contacts.exchanged[:] = 0.0
 
     def take_carriers(self, carriers: Carriers) -> None:
-        """Keeps which faces support the blocks when the motion begins."""
+        """Store the faces that support the blocks when the motion begins."""
         self.carriers = carriers
 
     @property
     def loads_turn(self) -> bool:
-        """Whether blocks that deform have loads at points, which deform them in another way when they have turned."""
+        """Test whether blocks that deform have loads at points, which act on the modes differently after a turn."""
         d, modes = self.model.dimension, self.model.rotations.stop
         return self.model.n_modes > 0 and bool(
             self.dead_loads[:, d:modes].any() or self.dead_loads[:, modes + 1 :].any()
         )
 
     def _turn_dead_loads(self) -> None:
-        """Loads on modes of blocks as these have turned by now."""
+        """Turn the loads on modes of blocks with their rotations."""
         if self.model.n_modes:
             self.loads.dead[:] = turned_loads(self.strained, self.dead_loads, self.bodies.turns)
 
     def start_moving(self) -> None:
-        """Takes the velocities, which are those of time 0, half a step back; energy counts as given.
+        """Move the velocities of time 0 back by half a step; their energy counts as given.
 
-        The first step begins as long before time 0 as it ends after it: half of its work is none of the run.
+        The first step begins as long before time 0 as it ends after it: half of its work is not of the run.
         """
         kinetic, saved, before = self.kinetic_energy(), self.save(), self.bodies.velocities.copy()
         self._run(0, 1, self._still(1), no_watch(self))
@@ -141,7 +142,7 @@ class DynamicSimulation(Simulation):
         self.ledger[:] -= early
 
     def set_masses(self) -> None:
-        """Fictitious masses, as long as masses are not real."""
+        """Set fictitious masses, as long as masses are not real."""
         if not self.real:
             super().set_masses()
 
@@ -151,7 +152,7 @@ class DynamicSimulation(Simulation):
             self._new_dampers()
 
     def _new_dampers(self, closed: int = STICKS) -> None:
-        """Dampers of the present joints; what they remember is with the points. closed: state of those closed."""
+        """Build the dampers of the present joints; their memory is with the points. closed: state of those closed."""
         joints, contacts, d = self.joints, self.contacts, self.model.dimension
         n = len(joints.kn) if self.damping.in_joints else 0
         of_modes = (n, 2, d, self.model.n_modes) if self.model.n_modes else (0,)
@@ -180,12 +181,12 @@ class DynamicSimulation(Simulation):
         )
 
     def _trifles(self) -> np.ndarray:
-        """Impulses that no other joint of a block notices [N s], (n_blocks,)."""
+        """Compute impulses that no other joint of a block notices [N s], (n_blocks,)."""
         weights = 1.0 / self.loads.force_scales[:, 0]
         return np.where(self.model.fixed, np.inf, self.settings.history.trifle * weights * self.dt)
 
     def forces_on_second(self) -> np.ndarray:
-        """In a motion those of the last step, in its frames, with the mean of dashpots over it and Maxwell elements."""
+        """Compute contact forces; in a motion those of the last step, with mean dashpot and Maxwell forces over it."""
         if not self.real:
             return super().forces_on_second()
         contacts, d = self.contacts, self.model.dimension
@@ -199,7 +200,7 @@ class DynamicSimulation(Simulation):
         return along_frames(self.joints.frames, forces)
 
     def _decays(self) -> np.ndarray:
-        """What Maxwell elements keep of their force over a step at constant rates, and gain, as Dampers.elements."""
+        """Compute the decay of Maxwell forces over a step at constant rates, and their gain, as Dampers.elements."""
         if not len(self.damping.elements):
             return np.zeros(0)
         share, rate = self.damping.elements.T
@@ -225,11 +226,11 @@ class DynamicSimulation(Simulation):
         looker: Looker | None = None,
         reader: Looker | None = None,
     ) -> None:
-        """n_steps steps over a stretch of ground motion, from its step `first`, with detection when it is due.
+        """Advance n_steps over a stretch of ground motion, from its step `first`, with detection when it is due.
 
-        The books are closed in the middle of the last step, where places, velocities and forces are of one time; looks
-        along the way change no bit. reader: who looks at the forces of a step, before faces are found anew; its steps
-        are those of the stretch. Raises KeyboardInterrupt.
+        The energy balance is closed in the middle of the last step, where places, velocities and forces are of one
+        time; looks along the way change no bit. reader: who looks at the forces of a step, before faces are found anew;
+        its steps are those of the stretch. Raises KeyboardInterrupt.
         """
         step, end = first, first + n_steps
         done = round(self.time / self.dt) - first  # steps before that of number 0
@@ -260,13 +261,13 @@ class DynamicSimulation(Simulation):
                 looker.look()
 
     def watch(self, blocks: np.ndarray, every: int, n_samples: int, gauges: Gauges = NO_GAUGES) -> Watch:
-        """Room for so many samples of blocks and of all links, every so many steps; gauges are read in each."""
+        """Allocate so many samples of blocks and of all links, every so many steps; gauges are read in each."""
         samples = np.zeros((n_samples, len(blocks), 3, self.model.rotations.stop))
         n_links = sum(len(link.state) for link in self.links)
         return Watch(blocks, every, samples, np.zeros((n_samples, n_links, N_STATE)), gauges)
 
     def _still(self, n_steps: int) -> Ground:
-        """A ground at rest."""
+        """Return a ground at rest."""
         d, n_dof = self.model.dimension, self.model.rotations.stop
         return Ground(np.zeros((n_steps, d)), np.zeros(0, np.int64), np.zeros((n_steps, 0, n_dof)))
 
@@ -294,11 +295,12 @@ class DynamicSimulation(Simulation):
     # -- energy ------------------------------------------------------------------------------------
 
     def kinetic_energy(self) -> float:
-        """Of all blocks, with the masses that they have now [J]."""
+        """Compute the kinetic energy of all blocks, with the masses that they have now [J]."""
         return self._energy_of(self.bodies.velocities, self.bodies.turns) if self.real else super().kinetic_energy()
 
     def elastic_energy(self) -> float:
-        """In springs and blocks at one instant: modes are a step ahead of the forces of the joints [J]."""
+        """Compute the elastic energy of springs and blocks at one instant: modes are a step ahead of the joint
+        forces [J]."""
         modes, found = self.bodies.modes, super().elastic_energy()
         if not (self.real and modes.size):
             return found
@@ -306,7 +308,7 @@ class DynamicSimulation(Simulation):
         return found + 0.5 * float((stiffness * ((modes - self.dt * rates) ** 2 - modes**2)).sum())
 
     def centred_kinetic_energy(self) -> float:
-        """Of the mean velocities of the last step [J]."""
+        """Compute the kinetic energy of the mean velocities of the last step [J]."""
         return self._energy_of(self.bodies.means.reshape(self.bodies.velocities.shape), self.turns_of_means)
 
     def _energy_of(self, velocities: np.ndarray, turns: np.ndarray) -> float:
@@ -323,14 +325,14 @@ class DynamicSimulation(Simulation):
         return found
 
     def note_kinetic_energy(self, energy: float | None = None) -> None:
-        """Remembers the largest kinetic energy that was seen [J], which errors of energy are compared with.
+        """Record the largest kinetic energy seen [J], which errors of energy are compared with.
 
         energy: that of this instant, if it is known.
         """
         self.most_kinetic = max(self.most_kinetic, self.centred_kinetic_energy() if energy is None else energy)
 
     def books(self) -> Books:
-        """The energy ledger since `begin`, one step back from the positions."""
+        """Return the energy balance since `begin`, one step back from the positions."""
         if not self.real:
             return super().books()
         kinetic, elastic = self.centred_kinetic_energy(), self.elastic_energy()
@@ -349,12 +351,12 @@ class DynamicSimulation(Simulation):
 
     @property
     def noticeable_energy(self) -> float:
-        """What lifts the whole structure by a small share of its smallest edge [J]."""
+        """Energy that lifts the whole structure by a small share of its smallest edge [J]."""
         weights = np.abs(self.loads.dead[self.free, : self.model.dimension]).sum()
         return self.settings.history.noticeable * self.smallest * float(weights)
 
     def show_base(self, acceleration: float, gravity: float) -> None:
-        """The load that records show: acceleration of the base over gravity."""
+        """Set the load shown in records: acceleration of the base over gravity."""
         self.control[slot.LIVE_FACTOR] = acceleration / gravity if gravity > 0.0 else 0.0
 
     def accelerations(self, blocks: np.ndarray) -> np.ndarray:
@@ -383,5 +385,5 @@ def _masses(model: Model) -> np.ndarray:
 
 
 def no_watch(sim: Simulation) -> Watch:
-    """Nobody looks: room for no sample, however long the stretch."""
+    """Return empty room for samples, where nobody observes a stretch of any length."""
     return Watch(np.zeros(0, np.int64), 1, np.zeros((1, 0, 3, sim.model.rotations.stop)))

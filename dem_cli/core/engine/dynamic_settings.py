@@ -7,7 +7,7 @@ from dem_cli.frozen_records import dataclass
 
 @dataclass(frozen=True)
 class FrequencySettings:
-    """Natural frequencies: dense or sparse eigenvalues, and how exact."""
+    """Settings of natural frequencies: dense or sparse eigenvalues, and how exact."""
 
     dense: int = 30  # degrees of freedom up to which a full matrix is used; beyond, threads of BLAS may cost more
     dense_share: float = 0.5  # of all modes: from there on as well
@@ -19,7 +19,8 @@ class FrequencySettings:
 
 @dataclass(frozen=True)
 class ModesSettings:
-    """Modes under gravity: which contact points are springs, pictures, calibration from a measured frequency."""
+    """Settings of modes under gravity: which contact points are springs, pictures, calibration from a measured
+    frequency."""
 
     pressed: float = 1e-4  # of the mean weight of a block: a point with less than that may be round-off
     closes: float = 1e-6  # of the smallest edge: a gap below that is closed, but for what gravity opened
@@ -34,7 +35,7 @@ class ModesSettings:
 
 @dataclass(frozen=True)
 class HistorySettings:
-    """Time histories: looks along the way, time step, and when one of many runs has ended."""
+    """Settings of time histories: looks along the way, time step, and when one of many runs has ended."""
 
     longest_look: float = 0.1  # s from one look to the next, at most
     rows: int = 200  # looks along the way: energies, collapse, whether all is well
@@ -43,7 +44,7 @@ class HistorySettings:
     blow_up: float = 0.2  # energy error over the largest energy from which a run is stopped
     inside: float = 1e-3  # of the smallest edge: blocks moved deeper into others than joints give when they close
     look: float = 0.1  # s of motion between two looks of one of many runs: collapse times are known to this
-    energy_every: int = 10  # looks from one look into the books to the next
+    energy_every: int = 10  # looks from one check of the energy balance to the next
     loose_step: float = 1e-4  # s: the time step where no joint limits it, at most
     loose_share: float = 1e-3  # of the duration: the same
     drift: float = (
@@ -70,7 +71,7 @@ class HistorySettings:
 
 @dataclass(frozen=True)
 class SnapshotSettings:
-    """Snapshots of a time history: how many show its motion, where the case does not say it."""
+    """Settings of the snapshots of a time history: how many show its motion, where the request does not say it."""
 
     per_second: float = 12.5  # [1/s], at least: what a movie of it needs
     per_second_still: float = 2.5  # [1/s], until a block has moved visibly: a frame takes as long as a thousand steps
@@ -90,7 +91,7 @@ class SnapshotSettings:
 
 @dataclass(frozen=True)
 class RockingSettings:
-    """Stiffness of "auto" joints in time histories (dynamics/rocking_stiffness.py), and how it is checked.
+    """Settings of "auto" joint stiffness in time histories (dynamics/rocking_stiffness.py), and of its check.
 
     Angles are those by which blocks turn on their joints when their weight acts sideways: well-conditioned peaks are
     off by about 0.2 % at 1e-6, 0.5 % at 1e-5, 2 % at 1e-4 (docs/rocking.md, Default settings).
@@ -110,7 +111,7 @@ class RockingSettings:
 
 @dataclass(frozen=True)
 class RestitutionSettings:
-    """The dashpot that gives a wanted ratio of angular velocities, found by rocking a block."""
+    """Settings of the dashpot that gives a wanted ratio of angular velocities, found by rocking a block."""
 
     housner_fraction: float = 2.0  # of critical: within 3e-4 of Housner's ratio for h/b from 2 to 5 (docs/rocking.md)
     most: float = 4.0  # fractions of critical between which a ratio is sought
@@ -125,7 +126,7 @@ class RestitutionSettings:
 
 @dataclass(frozen=True)
 class StatisticsSettings:
-    """Many runs: draws of slightly different structures, and the distribution of what they carry."""
+    """Settings of many runs: draws of slightly different structures, and the distribution of their loads."""
 
     largest_draw: float = 3.0  # standard deviations that a draw is limited to
     grid: int = 100  # medians and dispersions, each, that the confidence of a fit is found from

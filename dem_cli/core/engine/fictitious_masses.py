@@ -22,8 +22,8 @@ def fictitious_masses(
     free_fall: float = DEFAULT.relaxation.free_fall,
     links: Springs | None = None,
 ) -> None:
-    """Inverse masses for a pseudo-step of one, into inverse_out (n_blocks, n_dof); 0 for fixed blocks and what
-    restraints hold.
+    """Compute inverse masses for a pseudo-step of one, into inverse_out (n_blocks, n_dof); 0 for fixed blocks and
+    restrained motions.
 
     M_i = 1/(4 s²) Σ_c k_c (|b_ci|/w_i) Σ_j |b_cj| w_j with w = 1 for translations and 1/r for rotations
     (Gershgorin's bound of the highest eigenfrequency in the metric w; s: safety). Where blocks turn in space, all three

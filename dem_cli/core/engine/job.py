@@ -1,4 +1,4 @@
-"""Job: one run, from its request and model to an outcome; what every analysis shares."""
+"""Run of one analysis (job), from its request and model to an outcome; what every analysis shares."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
 @dataclass
 class Outcome:
-    """Outcome of an analysis; `summary` holds the keys of summary.json that are the solver's."""
+    """Outcome of an analysis; `summary` has the keys of summary.json that are the solver's."""
 
     summary: dict[str, Any]
 
 
 @dataclass
 class Job:
-    """One run: what is asked for, its model, and what its stages share."""
+    """Run of one analysis: its request, its model, and what its stages share."""
 
     LASTING: ClassVar[frozenset[str]] = frozenset(("request", "model", "clock", "monitors", "budget", "settings"))
     request: SolverRequest
@@ -49,16 +49,16 @@ class Job:
 
     @classmethod
     def start(cls, request: SolverRequest, model: Model, observer: Observer, settings: Settings = DEFAULT) -> Job:
-        """A job that reports to `observer`."""
+        """Create a run that reports to `observer`."""
         monitors, budget = Monitors(request.monitors, model), Budget(request.analysis.max_steps)
         return cls(request, model, Clock(observer), monitors, budget, settings)
 
     def stiffness(self, kinematics: str) -> float:
-        """kn·h/W of "auto" joints in a static analysis, at least."""
+        """Return kn·h/W of "auto" joints in a static analysis, at least."""
         return static_ratio(self.model, kinematics, self.settings.stiffness)
 
     def simulation(self, kinematics: str, ratio: float | None = None, elastic: bool = False) -> Simulation:
-        """A compiled simulation; ratio: kn·h/W of "auto" joints (None: that of the settings).
+        """Build a compiled simulation; ratio: kn·h/W of "auto" joints (None: that of the settings).
 
         Where geometry moves they stand for rigid ones (engine/rigid_joints.py) and are stiffer if the structure leans
         too far on them; elastic: they are the springs that they are.
@@ -75,11 +75,12 @@ class Job:
         return sim
 
     def moving_simulation(self, elastic: bool = False) -> Simulation:
-        """A simulation whose geometry moves, unless fixed geometry is asked for; elastic as for `simulation`."""
+        """Build a simulation with large displacements, unless fixed geometry is requested; elastic as for
+        `simulation`."""
         return self.simulation("fixed" if self.request.analysis.kinematics == "fixed" else "large", elastic=elastic)
 
     def softer(self, sim: Simulation, times: float) -> Simulation:
-        """The same as a simulation whose geometry moves, on "auto" joints that are so many times as soft."""
+        """Build the same simulation with large displacements on "auto" joints that are so many times as soft."""
         softer = self._compiled("large", ratio_of(sim) / times)
         softer.takes_back, softer.leans = sim.takes_back, leaning(softer)
         softer.shown = shown_closure(softer, self.request.analysis.resolution)
@@ -101,7 +102,7 @@ class Job:
         )
 
     def first_simulation(self) -> Simulation:
-        """The simulation that finds equilibria and failure, with the kinematics that are asked for or needed."""
+        """Build the simulation that finds equilibria and failure, with the requested or necessary kinematics."""
         moving = why_moving(self.request, self.model)
         if moving is None:
             self.skipped.append("large displacements: the geometry of the start is exact for a failure load")
@@ -113,11 +114,11 @@ class Job:
         return self.simulation("fixed" if moving is None else "large")
 
     def track(self, sim: Simulation) -> Track:
-        """Rows and frames of a simulation."""
+        """Create the track for rows and frames of a simulation."""
         return Track(sim, self.clock, self.monitors, self.request.snapshots)
 
     def outcome(self, sims: list[Simulation], found: dict[str, Any]) -> Outcome:
-        """The summary of all simulations of this job, audited."""
+        """Build the audited summary of all simulations of this run."""
         worst = max((closure(sim) for sim in sims), key=abs)
         overlap = max(measures.largest_overlap(sim) / sim.smallest for sim in sims)
         self.warnings += doubts(self.request, sims, found)

@@ -1,4 +1,4 @@
-"""Joints of a simulation in few numbers, for summary.json: how many are open, the widest crack, the largest stress."""
+"""Joint state of a simulation in few numbers, for summary.json: open joints, widest crack, largest stress."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ LAST_EQUILIBRIUM, END = "last equilibrium", "end"
 
 
 def joint_state(sim: Simulation, instant: str) -> dict[str, Any]:
-    """Joints as they were drawn, now; instant: in words. With the two blocks of each largest value."""
+    """Return the state of the joints as they were drawn; instant: in words. With the two blocks of each largest
+    value."""
     joints = DrawnJoints(sim.model)
     positions = sim.bodies.positions + sim.origin
     ids = sim.model.block_ids
@@ -40,12 +41,12 @@ def joint_state(sim: Simulation, instant: str) -> dict[str, Any]:
 
 
 def _beside(sim: Simulation) -> dict[str, Any]:
-    """Ties, bars and reactions of restraints, which hold blocks beside joints."""
+    """Return the forces of ties, bars and restraints, which act on blocks beside joints."""
     return _links(sim) | _restraints(sim)
 
 
 def _restraints(sim: Simulation) -> dict[str, Any]:
-    """What restraints give to each block, forces [N] and moments about its centroid [N m]; nothing without any."""
+    """Return the reactions of restraints on each block, forces [N] and moments [N m]; empty without any."""
     model = sim.model
     if not len(model.restrained):
         return {}
@@ -58,7 +59,7 @@ def _restraints(sim: Simulation) -> dict[str, Any]:
 
 
 def _links(sim: Simulation) -> dict[str, Any]:
-    """What each link says of itself by its name, ties and bars apart; nothing where there are none."""
+    """Return the answer of each link by its name, ties and bars apart; empty where there are none."""
     said: dict[str, dict[str, Any]] = {}
     for link, number, name in each(sim.links, sim.model.link_names):
         said.setdefault(SECTIONS[link.kind], {})[name] = link.answer(number)

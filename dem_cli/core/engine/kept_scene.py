@@ -1,4 +1,4 @@
-"""Whether a scene that was read from a checkpoint is one that compiled loops may work on.
+"""Validation of a scene that was read from a checkpoint, before compiled loops work on it.
 
 They follow numbers of blocks, joints, points and corners without a look at how many there are. So no number from a file
 gets there that leads out of its array: rows are counted, numbers are held to what they count, and what stays the same
@@ -58,7 +58,8 @@ _N_KINDS, _MOST_THREADS = 4, 4096
 
 
 def guard_of(sim: Simulation) -> Callable[[Any], None]:
-    """Looks at `sim`, once a kept state is in it (None), or at a saved state beside. Raises ValueError: it is unfit."""
+    """Return the check of a saved state: of `sim` itself, once a saved state is in it (None), or of one beside it.
+    Raises ValueError: it is unfit."""
     before, bodies, links, chains = sim.tracking.arrays(), sim.bodies, sim.links, sim.tracking.chains
     dampers, in_tiles = getattr(sim, "dampers", None), sim.tiled
     shortest, longest = sim.settings.detection.shortest_call, sim.settings.detection.longest_call
@@ -82,7 +83,7 @@ def guard_of(sim: Simulation) -> Callable[[Any], None]:
 
 
 def _counts(sim: Simulation, joints: Any) -> dict[str, int]:
-    """How many of each there are."""
+    """Count the joints, points, blocks, parts, faces and corners."""
     topology, n_points = sim.model.topology, int(joints.starts[-1])
     return {
         "joints": len(joints.blocks), "ends": len(joints.blocks) + 1, "points": n_points, "blocks": sim.model.n_blocks,
@@ -91,7 +92,7 @@ def _counts(sim: Simulation, joints: Any) -> dict[str, int]:
 
 
 def _check_rows(sim: Simulation, before: Any, one: Any) -> None:
-    """Joints, geometry and contacts of a state. before: those that this run has."""
+    """Check joints, geometry and contacts of a state. before: those that this run has."""
     for name in before._fields:
         _require(alike(getattr(before, name), getattr(one, name), rows=True), name)
     joints, geometry = one.joints, one.geometry
@@ -137,7 +138,7 @@ def _check_starts(starts: np.ndarray, n: int, last: int) -> None:
 
 
 def _check_tiles(sim: Simulation, joints: FixedJoints) -> None:
-    """Tiles are those of these joints, for as many threads as they are for."""
+    """Check that tiles belong to these joints, for as many threads as they are for."""
     threads, model, tiles = len(joints.tiles.controls), sim.model, joints.tiles
     _require(0 < threads <= _MOST_THREADS, "tiles")
     made = NO_TILES

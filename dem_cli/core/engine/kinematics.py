@@ -1,4 +1,4 @@
-"""Kinematics of a run: whether its geometry moves on the way to failure, and the scale of its live loads."""
+"""Kinematics of a run: whether large displacements matter before failure, and the scale of its live loads."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ if TYPE_CHECKING:
 
 
 def why_moving(request: SolverRequest, model: Model) -> str | None:
-    """Why geometry moves on the way to failure ("": it is asked for); None: that of the start is good enough.
+    """Return the reason for large displacements before failure ("": requested); None: the initial geometry is good
+    enough.
 
-    Raises CaseError where fixed geometry is asked for that joints do not allow.
+    Raises CaseError where fixed geometry is requested that joints do not allow.
     """
     wanted = request.analysis.kinematics
     profiles = [name for name, joint in request.joints.named.items() if joint.profile is not None]
@@ -42,7 +43,7 @@ def why_moving(request: SolverRequest, model: Model) -> str | None:
 
 
 def gaps_may_close(request: SolverRequest, model: Model) -> bool:
-    """Whether blocks start with gaps, drawn or of imperfections, that may close on the way to failure."""
+    """Test whether blocks start with gaps, drawn or of imperfections, that may close on the way to failure."""
     return request.imperfect or bool(gaps_of_start(model).close.any())
 
 
@@ -66,7 +67,7 @@ def fixed_beside(request: SolverRequest, model: Model) -> np.ndarray | None:
 
 
 def open_gaps_doubt(model: Model) -> str | None:
-    """What is to be said where geometry does not move: the gaps that stay open; None: there are none."""
+    """Return the warning about gaps that stay open in fixed geometry; None where there are none."""
     gaps = gaps_of_start(model)
     if not len(gaps.widths):
         return None

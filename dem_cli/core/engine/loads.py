@@ -10,7 +10,7 @@ from dem_cli.core.model.scales import own_weights
 
 
 def loads_of(model: Model, live_scale: float, radii: np.ndarray, narrowest_arm: float) -> Loads:
-    """Loads of the blocks that can move, without masses and limits of speed yet.
+    """Collect the loads of the blocks that can move, without masses and limits of speed yet.
 
     live_scale: factor on the live loads; radii: of the blocks [m], (n_blocks,); narrowest_arm: of its radius, the
     least width that a block's moments are compared with.
@@ -36,12 +36,12 @@ def loads_of(model: Model, live_scale: float, radii: np.ndarray, narrowest_arm: 
 
 
 def _with_modes(loads: np.ndarray, on_modes: np.ndarray) -> np.ndarray:
-    """Loads of blocks, behind them those of their modes; a copy."""
+    """Append the loads of modes to those of blocks; a copy."""
     return np.column_stack([loads, on_modes]) if on_modes.shape[1] else loads.copy()
 
 
 class ActingForces:
-    """What the unbalanced force of each block is measured by where other loads than weights act.
+    """Reference force of each block's unbalanced force where other loads than weights act.
 
     That is the largest of its own weight, of a share of the live load on it, and of a smaller one of what its joints
     carry: a block of 0.6 N that is pulled with 40 kN is known to some digits of these, and not of its weight. Live
@@ -64,15 +64,15 @@ class ActingForces:
         self.over_weights = float(self.live.sum() / dead.sum()) if dead.any() else 0.0
 
     def count(self, multiplier: float) -> bool:
-        """Whether anything but weights counts at a multiplier of the live loads."""
+        """Test whether loads other than weights matter at a multiplier of the live loads."""
         return self.loaded or abs(multiplier) * self.most > 1.0
 
     def growth(self, multiplier: float) -> float:
-        """By how much all forces are larger than under the weights alone, as far as that counts; 1 at least [-]."""
+        """Return the ratio of all forces to those under the weights alone, as far as that counts; 1 at least [-]."""
         return max(abs(multiplier) * self.over_weights, 1.0)
 
     def largest_share(self, bodies: Bodies, joints: Joints, contacts: Contacts, multiplier: float) -> float:
-        """Largest unbalanced force of a block in the last step, over what it is measured by [-]."""
+        """Return the largest unbalanced force of a block in the last step, over its reference force [-]."""
         points = np.sqrt(contacts.normal**2 + (contacts.shear**2).sum(axis=1))
         carried = np.zeros(len(self.own))
         for side in joints.blocks.T:  # as much comes in as goes out

@@ -67,7 +67,8 @@ def compiled_advance(
     tiled: bool = False,
     elastic: bool = False,
 ):
-    """The stepping loop for one kinematics, one law, one kind of joints and some of links; compiled at its first call.
+    """Build the stepping loop for one kinematics, one law, one kind of joints and some of links; compiled at its
+    first call.
 
     links: kinds of links that the scene has (links/registry.py); order: of the displacements within blocks, RIGID,
     LINEAR or QUADRATIC, which no link knows; tiled: joints are in tiles (`FixedJoints.tiles`), which geometry of the
@@ -108,7 +109,7 @@ def compiled_shake(
     links: tuple[str, ...] = (),
     order: int = RIGID,
 ):
-    """The stepping loop of time histories, as compiled_advance; compiled at its first call."""
+    """Build the stepping loop of time histories, as compiled_advance; compiled at its first call."""
     flags = {"keeps": damped, "meets": True}
     if order == QUADRATIC:
         forces = make_profiled_forces(law.function, law.bonded, strains=True, bends=True, **flags)
@@ -121,5 +122,5 @@ def compiled_shake(
 
 
 def _pull(links: tuple[str, ...], moves: bool) -> Callable | None:
-    """What adds the forces of these kinds of links; None: there are none."""
+    """Combine the force kernels of these kinds of links; None: there are none."""
     return all_forces([LINKS[kind].forces[moves] for kind in links]) if links else None

@@ -21,7 +21,7 @@ from dem_cli.core.model.following_loads import FollowingLoads
 from dem_cli.core.records.frames import ContactRecord, Frame, LinkPlaces, LinkRecord
 from dem_cli.core.records.history_rows import Energy
 
-ROUND_OFF = 1e-9  # of forces that cancel on a block: what is left of them is none
+ROUND_OFF = 1e-9  # of forces that cancel on a block: what is left of them counts as zero
 NET, ALL = 0, 1  # of Contacts.exchanged
 
 
@@ -42,12 +42,12 @@ class EnergySums(NamedTuple):
 
 
 def displacements(sim: Simulation) -> np.ndarray:
-    """Displacement of all centroids [m], (n_blocks, d)."""
+    """Return the displacement of all centroids [m], (n_blocks, d)."""
     return sim.bodies.positions - sim.reference_positions
 
 
 def rotations_since(sim: Simulation, before: Bodies) -> np.ndarray:
-    """How all blocks have turned since a saved state [rad], (n_blocks, r)."""
+    """Return the rotation of all blocks since a saved state [rad], (n_blocks, r)."""
     return turned_since(sim.bodies.orientations, before.orientations)
 
 
@@ -58,13 +58,13 @@ def largest_displacement(sim: Simulation) -> float:
 
 
 def largest_elastic(sim: Simulation) -> float:
-    """Largest displacement of a centroid that the joints show by themselves, or did before it was taken back [m]."""
+    """Return the largest displacement of a centroid by elastic joints alone, or before relief took it back [m]."""
     shown = displacements(sim) - sim.taken_back[:, : sim.model.dimension]
     return float(np.sqrt((shown[sim.free] ** 2).sum(axis=1)).max(initial=0.0))
 
 
 def round_off(sim: Simulation) -> float:
-    """Unbalanced force that the last digits of coordinates leave of a block that rests, over its own weight, at most.
+    """Bound the unbalanced force that round-off of coordinates leaves on a block at rest, over its own weight.
 
     Places are known to 2e-16 of the largest coordinate L, so that a point that presses has a force known to kn times
     that: Σ kn · 2e-16 L over the points of the block. Zero where geometry is that of the start, whose gaps are summed.
@@ -83,7 +83,7 @@ def round_off(sim: Simulation) -> float:
 
 
 def live_displacement(sim: Simulation) -> float:
-    """Work-conjugate displacement of the live load, q·u [J per unit multiplier].
+    """Compute the work-conjugate displacement of the live load, q·u [J per unit multiplier].
 
     Of forces that follow their blocks: of the points that they go along with, along their directions as drawn.
     """
@@ -96,7 +96,7 @@ def live_displacement(sim: Simulation) -> float:
 
 
 def _displacement_of_followers(sim: Simulation, following: FollowingLoads) -> float:
-    """The same where loads follow their blocks; restrained motions are zero."""
+    """Compute q·u where loads follow their blocks; restrained motions are zero."""
     turned = rotation_vectors(sim.bodies.orientations)
     motion = np.column_stack([displacements(sim), turned])
     drawn = float((sim.model.live_loads * motion)[sim.free].sum())
@@ -137,7 +137,7 @@ def dead_scale(sim: Simulation) -> float:
 
 
 def link_scale(sim: Simulation) -> float:
-    """What all present loads would do to the softest link, at most a smallest edge [m]; 0: there are no links."""
+    """Compute the elongation of the softest link under all present loads, at most a smallest edge [m]; 0: no links."""
     if not sim.links:
         return 0.0
     d, control, loads = sim.model.dimension, sim.control, sim.loads
@@ -151,7 +151,8 @@ def largest_overlap(sim: Simulation) -> float:
 
 
 def reactions(sim: Simulation) -> np.ndarray:
-    """What holds blocks gives to them, forces [N] and moments about their centroids [N m], (n_blocks, d + r).
+    """Compute the reactions of supports and restraints, forces [N] and moments about centroids [N m], (n_blocks, d
+    + r).
 
     To those with restraints along what these hold, against joints, links and loads; to fixed blocks against joints and
     links, without weight and loads of their own. Zero along all that is free.
@@ -179,7 +180,7 @@ def energy_sums(sim: Simulation) -> EnergySums:
 
 
 def energy(sim: Simulation) -> Energy:
-    """The energy ledger since the start [J]; external: applied loads and base without gravity."""
+    """Compute the energy balance since the start [J]; external: applied loads and base without gravity."""
     books, d, free = sim.books(), sim.model.dimension, sim.free
     weight, height = -sim.drawn_dead[free, d - 1], displacements(sim)[free, d - 1]
     if books.lag > 0.0:
@@ -201,7 +202,7 @@ def energy(sim: Simulation) -> Energy:
 
 
 def closure(sim: Simulation, books: Energy | None = None) -> float:
-    """Energy error over the largest energy in the ledger, or kinetic so far: 0 where the books balance.
+    """Compute the error of the energy balance over its largest energy, or kinetic so far; 0 where it closes.
 
     books: `energy` of this instant, if that is known.
     """
@@ -212,7 +213,7 @@ def closure(sim: Simulation, books: Energy | None = None) -> float:
 
 
 def reweighting(sims: Sequence[Simulation]) -> dict[str, dict[str, float]]:
-    """Key of the summary where geometry moves in space: of the simulation in which most energy changed so [J]."""
+    """Return the summary key of energy changed by contact areas, of the simulation with the most [J]."""
     moved = [sim.contacts for sim in sims if sim.kinematics == "large" and sim.contacts.shear.shape[1] > 1]
     if not moved:
         return {}
@@ -221,7 +222,8 @@ def reweighting(sims: Sequence[Simulation]) -> dict[str, dict[str, float]]:
 
 
 def reweighting_shares(sim: Simulation) -> tuple[float, float]:
-    """Energy that changed with the areas of contact points, net (minus: made) and the sum of all amounts.
+    """Compute the share of energy that changed with the areas of contact points, net (minus: made) and the sum of
+    all amounts.
 
     Over the largest kinetic energy of a time history, or its elastic one where it hardly moves; in pseudo-time over the
     largest energy in the ledger.
@@ -233,17 +235,17 @@ def reweighting_shares(sim: Simulation) -> tuple[float, float]:
 
 
 def taken(e: Energy) -> float:
-    """Energy that friction and all kinds of damping took [J]."""
+    """Compute the energy that friction and all kinds of damping dissipated [J]."""
     return e.friction + e.damping + e.dashpots + e.mass_damping + e.maxwell
 
 
 def _largest(sim: Simulation, e: Energy) -> float:
-    """The largest energy in the ledger, or kinetic so far [J]."""
+    """Return the largest energy in the balance, or kinetic so far [J]."""
     return max(abs(e.external), abs(e.gravity), abs(e.supports), e.elastic, taken(e), sim.most_kinetic)
 
 
 def contact_points(sim: Simulation, blocks: np.ndarray) -> np.ndarray:
-    """Where the contact points are now [m], (n_points, d); blocks: the first one of each.
+    """Compute the positions of the contact points now [m], (n_points, d); blocks: the first one of each.
 
     Geometry of the start keeps its points where they were, however far its blocks go: in space these take them along.
     """
@@ -282,7 +284,7 @@ class Touching(NamedTuple):
 
 
 def touching(sim: Simulation) -> Touching:
-    """The contact points of now: a copy, of which `contact_record` may be made later."""
+    """Copy the contact points of now, of which `contact_record` may be made later."""
     contacts, owner = sim.measured(), sim.joints.owners
     points, joints = contact_points(sim, sim.joints.blocks[owner, 0]) + sim.origin, sim.joints.kept()
     if isinstance(joints, MovingJoints):
@@ -291,7 +293,7 @@ def touching(sim: Simulation) -> Touching:
 
 
 def contact_record(sim: Simulation, seen: Touching | None = None) -> ContactRecord:
-    """All contact points of an instant that was seen, or of now."""
+    """Record all contact points of an instant that was seen, or of now."""
     joints, contacts, points = seen or touching(sim)
     d, owner, used = sim.model.dimension, joints.owners, points_in_use(joints)
     everywhere = bool(used.all())
@@ -325,12 +327,12 @@ def shares_of_blocks(sim: Simulation, compliance: BlockCompliance | None) -> np.
 
 
 def frame(sim: Simulation, stage: str) -> Frame:
-    """A snapshot."""
+    """Take a snapshot of the simulation as a frame."""
     return frame_of(sim, moment(sim), stage)
 
 
 class Moment(NamedTuple):
-    """What a frame shows of one instant but its load: a part of the cost of the frame, where many are dropped."""
+    """State of one instant for a frame, without its load: a part of the cost of the frame, where many are dropped."""
 
     steps: int
     displacement: float  # largest of a centroid [m]
@@ -344,7 +346,7 @@ class Moment(NamedTuple):
 
 
 def moment(sim: Simulation) -> Moment:
-    """What a frame of now would show, for `frame_of`."""
+    """Record the present instant, for `frame_of`."""
     bodies = sim.bodies
     return Moment(
         sim.steps, largest_displacement(sim), bodies.positions + sim.origin, quaternions(bodies.orientations),
@@ -353,7 +355,7 @@ def moment(sim: Simulation) -> Moment:
 
 
 def frame_of(sim: Simulation, seen: Moment, stage: str) -> Frame:
-    """A snapshot of a moment that was seen, with the load of now."""
+    """Make the frame of a moment that was recorded, with the load of now."""
     return Frame(
         stage, seen.steps, sim.load * sim.live_scale, seen.displacement, seen.positions, seen.orientations,
         seen.velocities, contact_record(sim, seen.contacts), seen.time, seen.stresses, seen.links,
@@ -361,7 +363,7 @@ def frame_of(sim: Simulation, seen: Moment, stage: str) -> Frame:
 
 
 def link_record(sim: Simulation) -> LinkRecord | None:
-    """Ties and bars now; None: there are none."""
+    """Record ties and bars now; None: there are none."""
     if not sim.links:
         return None
     outlines = [link.outline() for link in sim.links]

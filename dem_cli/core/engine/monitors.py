@@ -1,4 +1,4 @@
-"""Monitors: numbers followed through a run; the same formulas for one instant and for a stretch of time.
+"""Monitors: quantities followed through a run; the same formulas for one instant and for a stretch of time.
 
 A sample holds position (with the angle, in space the rotation vector), velocity and acceleration of a block, all at
 one instant and relative to the base: samples are (n, n_watched, 3, n_dof).
@@ -35,7 +35,7 @@ OF_BASE = {"acceleration": 0, "velocity": 1, "displacement": 2}  # as records.hi
 
 
 class Points(NamedTuple):
-    """Material points: they move with their blocks. All of a case at once, as a stretch of time is short."""
+    """Material points, which move with their blocks. All of a case at once, as a stretch of time is short."""
 
     rows: np.ndarray  # of their blocks in the samples, (n_points,)
     starts: np.ndarray  # centroids of their blocks, undeformed, as the samples count [m], (n_points, d)
@@ -44,7 +44,7 @@ class Points(NamedTuple):
 
 
 class PointMotion:
-    """How all points move over a stretch of time."""
+    """Motion of all points over a stretch of time."""
 
     def __init__(self, points: Points, samples: np.ndarray):
         self.points, self.samples, self.d = points, samples[:, points.rows], points.arms.shape[1]
@@ -52,23 +52,23 @@ class PointMotion:
         self.arms = self.turned(points.strained)
 
     def turned(self, vectors: np.ndarray, which: np.ndarray | slice = slice(None)) -> np.ndarray:
-        """Vectors (k, d) that turn with the blocks of points, (n, k, d)."""
+        """Rotate vectors (k, d) with the blocks of points, (n, k, d)."""
         return turning(self.orientations[:, which])(vectors)
 
     @cached_property
     def displacement(self) -> np.ndarray:
-        """From the undeformed places [m], (n, n_points, d)."""
+        """Displacement from the undeformed places [m], (n, n_points, d)."""
         return self.samples[:, :, 0, : self.d] - self.points.starts + self.arms - self.points.arms
 
     @cached_property
     def velocity(self) -> np.ndarray:
-        """v + ω × r, (n, n_points, d)."""
+        """Velocity v + ω × r, (n, n_points, d)."""
         motion = self.samples[:, :, 1]
         return motion[:, :, : self.d] + swept(motion[:, :, self.d :], self.arms)
 
     @cached_property
     def acceleration(self) -> np.ndarray:
-        """a + α × r + ω × (ω × r), (n, n_points, d)."""
+        """Acceleration a + α × r + ω × (ω × r), (n, n_points, d)."""
         spins, change = self.samples[:, :, 1, self.d :], self.samples[:, :, 2]
         towards = swept(spins, swept(spins, self.arms))
         return change[:, :, : self.d] + swept(change[:, :, self.d :], self.arms) + towards
@@ -88,7 +88,8 @@ class JointMonitors(NamedTuple):
     lengths: np.ndarray  # whether its pairs are the two components of a slip in space, (n,) bool
 
     def fill(self, out: np.ndarray, motion: PointMotion) -> None:
-        """The largest of the pairs of each monitor, or the length of both [m], to its column of out (n, n_monitors)."""
+        """Write the largest of the pairs of each monitor, or the length of both [m], to its column of out (n,
+        n_monitors)."""
         moved = motion.displacement
         distances = self.apart + moved[:, self.second] - moved[:, self.first]
         along = (distances * motion.turned(self.axes, self.first)).sum(axis=2)
@@ -99,7 +100,8 @@ class JointMonitors(NamedTuple):
 
 
 class PointMonitor(NamedTuple):
-    """A vector at material points, its mean over them, the length or a component of that; or how far blocks turned."""
+    """Monitor of a vector at material points: its mean, the length or a component of that; or the rotation of
+    blocks."""
 
     column: int
     points: list[int]
@@ -110,7 +112,7 @@ class PointMonitor(NamedTuple):
     along: np.ndarray | None = None  # instead of a component: the direction in which it counts, unit, (d,)
 
     def fill(self, out: np.ndarray, motion: PointMotion, base: np.ndarray) -> None:
-        """Its column of out (n, n_monitors)."""
+        """Write the values to the monitor's column of out (n, n_monitors)."""
         if self.quantity == "rotation":
             vectors = self._mean(motion.orientations)
             length = angles_of(vectors)
@@ -124,14 +126,14 @@ class PointMonitor(NamedTuple):
             out[:, self.column] = length if self.component is None else vectors[:, "xyz".index(self.component)]
 
     def _mean(self, vectors: np.ndarray) -> np.ndarray:
-        """Of vectors of all points (n, n_points, ...) over its own, (n, ...)."""
+        """Average vectors of all points (n, n_points, ...) over the points of the monitor, (n, ...)."""
         if len(self.points) == 1:
             return vectors[:, self.points[0]]
         return np.einsum("np...,p->n...", vectors[:, self.points], self.weights)
 
 
 class ReactionMonitor(NamedTuple):
-    """What holds blocks gives to all of them together: its force, or its moment about their common centroid."""
+    """Monitor of reactions on some blocks together: their force, or their moment about the common centroid."""
 
     column: int
     blocks: np.ndarray  # those of which something is held, (n,)
@@ -139,7 +141,7 @@ class ReactionMonitor(NamedTuple):
     component: str | None
 
     def value(self, sim: Simulation) -> float:
-        """At this instant [N or N m]; of a vector in space without a component its length."""
+        """Compute the reaction at this instant [N or N m]; of a vector in space without a component its length."""
         model, given = sim.model, reactions(sim)[self.blocks]
         forces, vector = given[:, : model.dimension], given[:, : model.dimension].sum(axis=0)
         if self.quantity == "reaction_moment":
@@ -152,14 +154,15 @@ class ReactionMonitor(NamedTuple):
 
 
 class CutMonitor(NamedTuple):
-    """A force or moment that the joints along a cut carry, in the equilibrium of all beyond it."""
+    """Monitor of a force or moment that the joints along a cut carry, in the equilibrium of all beyond it."""
 
     column: int
     cut: SectionCut
     quantity: str
 
     def value(self, sim: Simulation, given: PointPushes) -> float:
-        """At this instant [N or N m]. Joints are found again where their material lay in the undeformed structure."""
+        """Compute the section force at this instant [N or N m]. Joints are found again where their material lay in
+        the undeformed structure."""
         passed = self.cut.passes(sim.model.centroids, given.blocks, given.middles)
         beyond = self.cut.sides(sim.model.centroids)[given.blocks[:, 0]]
         forces = np.where(beyond[:, np.newaxis], given.on_second, -given.on_second)
@@ -168,7 +171,7 @@ class CutMonitor(NamedTuple):
 
 
 class Monitors:
-    """Values of all monitors of a run, in the order in which they are asked for.
+    """Monitors of a run, in the order of their requests.
 
     watched  numbers of the blocks that must be known for it, ascending
     """
@@ -209,7 +212,7 @@ class Monitors:
         self._points = self._all_points()
 
     def values(self, sim: Simulation) -> tuple[float, ...]:
-        """At this instant; velocities per unit of the solver's time."""
+        """Compute the values of all monitors at this instant; velocities per unit of the solver's time."""
         if not self.requests:
             return ()
         bodies, watched = sim.bodies, self.watched
@@ -230,14 +233,14 @@ class Monitors:
         return [cut.column for cut in self._of_cuts]
 
     def in_cuts(self, sim: Simulation) -> list[float]:
-        """Forces in cuts now, in a motion those of its last step [N or N m], in the order of their columns."""
+        """Compute forces in cuts now, in a motion those of its last step [N or N m], in the order of their columns."""
         if not self._of_cuts:
             return []
         given = point_pushes(sim)
         return [cut.value(sim, given) for cut in self._of_cuts]
 
     def _strain(self, sim: Simulation) -> None:
-        """Takes the points where the strains of their blocks have them at this instant."""
+        """Move the points to where the strains of their blocks have them at this instant."""
         if not self.model.n_modes:
             return
         blocks, arms, shapes = self.watched[self._points.rows], self._points.arms, self.model.mode_shapes
@@ -248,7 +251,7 @@ class Monitors:
         self._points = self._points._replace(strained=arms + found)
 
     def series(self, samples: np.ndarray, base: np.ndarray, links: np.ndarray = NO_LINKS) -> np.ndarray:
-        """Over time, (n, n_monitors).
+        """Compute the values of all monitors over time, (n, n_monitors).
 
         samples: of the watched blocks, (n, n_watched, 3, n_dof); base: acceleration, velocity and displacement
         of the base at the same instants [m, s], (n, 3, d); links: state of all links, (n, n_links, 3).
@@ -271,7 +274,7 @@ class Monitors:
 
     @property
     def absolute(self) -> bool:
-        """Whether any of these is measured in space, with the motion of the base."""
+        """Test whether any of these is measured in space, with the motion of the base."""
         return any(monitor.absolute for monitor in self.gauged)
 
     def gauges(self, base: np.ndarray) -> Gauges:
@@ -326,7 +329,7 @@ class Monitors:
         return found
 
     def _component(self, monitor: PointMonitor) -> int:
-        """As Gauges.components; a rotation in the plane is a number."""
+        """Return the component, coded as Gauges.components; a rotation in the plane is a number."""
         if monitor.quantity == "rotation" and self.model.dimension == 2:
             return 0
         if monitor.along is not None:
@@ -353,12 +356,12 @@ class Monitors:
         return found
 
     def _point(self, block: int, arm: np.ndarray) -> int:
-        """Number of a new point."""
+        """Add a point and return its number."""
         self._places.append((block, arm))
         return len(self._places) - 1
 
     def _point_monitor(self, column: int, one: MonitorRequest, blocks: Sequence[int]) -> PointMonitor:
-        """Of a point, or of the centroids of blocks, weighted by their masses."""
+        """Build the monitor of a point, or of the centroids of blocks, weighted by their masses."""
         arm = np.zeros(self.model.dimension)
         if one.point is not None:
             arm = np.array(one.point) - self.model.centroids[blocks[0]]
@@ -367,7 +370,7 @@ class Monitors:
         return PointMonitor(column, points, masses / masses.sum(), one.quantity, one.component, one.absolute)
 
     def _drift_monitor(self, column: int, one: MonitorRequest, blocks: Sequence[int]) -> PointMonitor:
-        """Of the points at both ends of the height of a pier."""
+        """Build the monitor of the drift of a pier, from the points at both ends of its height."""
         assert one.cut is not None
         assert one.height is not None
         cut = section_cut(one.cut)
@@ -378,7 +381,7 @@ class Monitors:
         return PointMonitor(column, points, weights, "displacement", None, False, cut.axes[1])
 
     def _pairs(self, column: int, quantity: str, first: int, second: int) -> list[tuple]:
-        """Of one monitor: first and second point, distance, axis and the number of the monitor."""
+        """Return the point pairs of one joint monitor: first and second point, distance, axis and monitor number."""
         from dem_cli.core.contact.between import StartJoints
 
         self._joints = self._joints or StartJoints(self.model)

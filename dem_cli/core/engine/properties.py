@@ -1,4 +1,4 @@
-"""Joint properties: from joints as they are asked for to stiffness and law of every pair of materials."""
+"""Joint properties: from requested joints to stiffness and law of every pair of materials."""
 
 from __future__ import annotations
 
@@ -27,17 +27,18 @@ if TYPE_CHECKING:
 
 
 def laws_of(request: SolverRequest) -> list[Law]:
-    """The laws of all joints, each once, in their order."""
+    """List the laws of all joints, each once, in their order."""
     return list({law.name: law for law in map(_law, request.joints.named.values())}.values())
 
 
 def law_of(request: SolverRequest) -> Law:
-    """The law of all joints; where several laws are mixed, one that finds the law of each."""
+    """Return the law of all joints; where several laws are mixed, one that finds the law of each."""
     return mixed(tuple(laws_of(request)))
 
 
 def integrates_with(request: SolverRequest, kinematics: str) -> bool:
-    """Whether the pressure on elastic joints is integrated over their faces in this analysis, with these kinematics.
+    """Test whether the pressure on elastic joints is integrated over their faces in this analysis, with these
+    kinematics.
 
     Not where a failure load is sought in geometry of the start: it is that of rigid blocks, and faces close for ever.
     """
@@ -52,7 +53,7 @@ def joint_properties(
     lands: bool | None = None,
     integrates: bool = True,
 ) -> JointProperties:
-    """Stiffness and law parameters of each named joint; "auto" means kn·h/W = ratio, and ks = kn.
+    """Compute stiffness and law parameters of each named joint; "auto" means kn·h/W = ratio, and ks = kn.
 
     Blocks of a material with a Young's modulus give way in their joints (contact/block_compliance.py).
 
@@ -107,12 +108,12 @@ def _law(table: StiffJoint) -> Law:
 
 
 def _spreads(table: StiffJoint) -> bool:
-    """Whether pressure and friction may act over the face: nobody asked for points, and nothing bonds them."""
+    """Test whether pressure and friction may act over the face: no points are requested, and no bond holds them."""
     return not table.asks_for_points and not _law(table).bonded
 
 
 def _layout(table: StiffJoint, asked: JointRequest, deforms: bool, lands: bool) -> PointLayout | None:
-    """Where the contact points of a joint are; None: at its two ends, in space at its vertices."""
+    """Return the layout of the contact points of a joint; None: at its two ends, in space at its vertices."""
     if table.profile is not None:
         return PointLayout(seed=asked.seed, **table.profile.ranges)
     points = table.contact_points(asked.dimension, deforms, lands)
@@ -138,7 +139,7 @@ def _with_deforming_blocks(
 def _with_rigid_blocks(
     names: Sequence[str], model: Model, lying: np.ndarray, compliance: BlockCompliance | None
 ) -> np.ndarray:
-    """Whether each named joint may lie between two blocks neither of which deforms, (n_named,) bool.
+    """Test whether each named joint may lie between two blocks neither of which deforms, (n_named,) bool.
 
     lying: as `_with_heads`.
     """
@@ -150,25 +151,25 @@ def _with_rigid_blocks(
 
 
 def _with_heads(model: Model, by_material: np.ndarray, heads: np.ndarray) -> np.ndarray:
-    """Named joints between two materials: that of their beds, then that in their heads, −1: nothing; where the model
-    does not tell these apart that of both alone, (1 or 2, n_materials, n_materials).
+    """Named joints between two materials, (1 or 2, n_materials, n_materials): that of their beds, then that in
+    their heads, −1: nothing. Where the model does not distinguish these, the first alone.
     """
     return np.stack([by_material, heads[by_material]] if len(model.courses) else [by_material])
 
 
 class _OfEachJoint(NamedTuple):
-    """What the rows of a law may hang on that two joints of one name need not share."""
+    """Parameters that a law reads of each joint, which two joints of one name need not share."""
 
     names: tuple[str, ...]  # of the named joints
     step: float  # time step [s] that velocities refer to
     lumped: bool  # whether blocks deform in their joints, so that kn is that of the joint and not of its name
-    seed: int  # of the case, from which friction is drawn
+    seed: int  # from which friction is drawn
 
 
 def _own_rows(
     tables: Sequence[StiffJoint], laws: Sequence[Law], columns: np.ndarray, each: _OfEachJoint
 ) -> LawRows | None:
-    """Rows of joints whose kn or friction is not that of their name; None: there are none."""
+    """Build rows of joints whose kn or friction is not that of their name; None: there are none."""
     width, step = columns.shape[1] - (len(laws) > 1), each.step
     hangs = [each.lumped and _columns(table, 1.0, step) != _columns(table, 2.0, step) for table in tables]
     varies = [isinstance(table, FrictionJoint) and table.variation > 0.0 for table in tables]
@@ -192,7 +193,7 @@ def _own_rows(
 
 
 def _with_own_friction(table: FrictionJoint, seed: int, key: tuple[str, ...]) -> StiffJoint:
-    """The table of one joint whose friction is drawn; key: names of the joint and of both blocks.
+    """Draw the friction of one joint into its table; key: names of the joint and of both blocks.
 
     What the law asks of its strengths among each other goes on to hold (laws/strength.py).
     """
@@ -200,7 +201,7 @@ def _with_own_friction(table: FrictionJoint, seed: int, key: tuple[str, ...]) ->
 
 
 def _columns(table: StiffJoint, kn: float, step: float) -> list[float]:
-    """Parameters of a joint; velocities as displacement per step."""
+    """Convert the parameters of a joint to columns; velocities as displacement per step."""
     law = _law(table)
     values = list(law.columns(table, kn))
     for column in law.rates:

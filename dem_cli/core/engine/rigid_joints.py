@@ -35,7 +35,8 @@ if TYPE_CHECKING:
 
 
 def relieved(sim: Simulation) -> bool:
-    """Whether rigid joints show no closure; else it is taken back, and the structure has to come to rest again."""
+    """Test whether rigid joints show no closure; else it is taken back, and the structure has to come to rest
+    again."""
     points = rigid_points(sim)
     shown = unrelieved(sim, points)
     if shown <= sim.shown:
@@ -45,7 +46,7 @@ def relieved(sim: Simulation) -> bool:
 
 
 def rigid_points(sim: Simulation) -> np.ndarray:
-    """Numbers of the points that press and whose stiffness is no property of theirs."""
+    """Find the contact points that press and whose stiffness is not a property, but "auto"."""
     if not sim.takes_back:
         return np.zeros(0, int)
     rigid = sim.properties.rigid_between(sim.model, sim.joints.blocks)
@@ -53,14 +54,14 @@ def rigid_points(sim: Simulation) -> np.ndarray:
 
 
 def unrelieved(sim: Simulation, points: np.ndarray) -> float:
-    """Share of the elastic closure of these points that geometry shows: root of the energies, 0 to 1 and some more."""
+    """Compute the share of elastic closure that geometry shows at these points: root of the energies, about 0 to 1."""
     normal, kn = sim.contacts.normal[points], sim.joints.kn[points]
     whole = float((normal**2 / kn).sum())
     return float(np.sqrt((kn * sim.measured().gaps[points] ** 2).sum() / whole)) if whole > 0.0 else 0.0
 
 
 def take_back(sim: Simulation, points: np.ndarray) -> None:
-    """Moves blocks at rest to where they were without the closure of these points.
+    """Move blocks at rest to where they were without the closure of these points.
 
     Forces stay to the last digit: what cannot go back at one point without closing another one stays for now.
     """
@@ -74,7 +75,7 @@ def take_back(sim: Simulation, points: np.ndarray) -> None:
 
 
 def motion_that_opens(sim: Simulation, points: np.ndarray, gaps: np.ndarray) -> np.ndarray:
-    """Displacements of all blocks that open the points that press by their overlap, (n_blocks, n_dof) [m, rad].
+    """Compute displacements of all blocks that open pressing points by their overlap, (n_blocks, n_dof) [m, rad].
 
     A block that stands on two points close to each other would turn until both are open, by as much as their distance
     is small, and into its neighbours: points that would be pushed far into overlap are held where they just touch. Zero
@@ -104,7 +105,7 @@ def motion_that_opens(sim: Simulation, points: np.ndarray, gaps: np.ndarray) -> 
 
 
 def _least_squares(motion: csr_matrix, stiffness: np.ndarray, wanted: np.ndarray, singular: float) -> np.ndarray:
-    """Displacements u of least Σ stiffness (motion u − wanted)², (n_columns,); both (n_points, d)."""
+    """Solve for displacements u of least Σ stiffness (motion u − wanted)², (n_columns,); both (n_points, d)."""
     from scipy.sparse import diags
 
     weighted = motion.T @ diags(stiffness.ravel())

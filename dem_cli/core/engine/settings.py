@@ -1,6 +1,6 @@
 """Settings of the solvers, all in one record: tolerances, damping, detection, and those of each kind of analysis.
 
-A case file offers none of them; benchmarks and studies hand in others. Each was chosen once, for all structures
+No input file can set them; benchmarks and studies pass others. Each was chosen once, for all structures
 (docs/numerics.md), and a summary names those that differ from the default.
 """
 
@@ -38,7 +38,8 @@ from dem_cli.frozen_records import dataclass
 
 @dataclass(frozen=True)
 class AutomaticStiffness:
-    """kn·h/W of "auto" joints: normal stiffness [Pa/m] times smallest edge over mean weight per joint area."""
+    """Settings of "auto" stiffness kn·h/W: normal stiffness [Pa/m] times smallest edge over mean weight per joint
+    area."""
 
     fixed: float = 1e10  # where geometry is that of the start, and stiffness drops out
     digits: float = 1e-4  # there too, a weight sinks by the last digit of a coordinate over this
@@ -55,7 +56,7 @@ class AutomaticStiffness:
 
 @dataclass(frozen=True)
 class DetectionSettings:
-    """Contact detection, and how long a compiled call may be."""
+    """Settings of contact detection, and of the length of a compiled call."""
 
     skin: float = 0.05  # reach, as a share of the smallest edge
     wide_skin: float = 0.15  # of blocks that rock and move far: fewer detections are worth more joints to look at
@@ -70,7 +71,7 @@ class DetectionSettings:
 
 @dataclass(frozen=True)
 class ClearanceSettings:
-    """How far blocks may move until gaps of the start have closed: motion that is neither elastic nor failure."""
+    """Settings of clearance: motion until gaps of the start have closed is neither elastic nor failure."""
 
     margin: float = 1.25  # for the slip that goes with a microrotation, and finite rotations
     widest: float = 0.25  # of the smallest edge: gaps beyond are meant to stay
@@ -82,7 +83,8 @@ class ClearanceSettings:
 
 @dataclass(frozen=True)
 class RelaxationSettings:
-    """Equilibrium at a constant load: tolerances, damping, fictitious masses, ramps of loads.
+    """Settings of relaxation to equilibrium at a constant load: tolerances, damping, fictitious masses, ramps of
+    loads.
 
     Mass scaling (`*_safety`) for FIRE, for local damping (numerics, section 3) and for combined damping, which makes a
     reversal of force 1 + 2 combined_damping times as strong and is stable below 1/√(1 + 2 combined_damping) = 0.79.
@@ -105,7 +107,7 @@ class RelaxationSettings:
     free_fall: float = 1e-4  # acceleration of a structure without any contact, in radii of its blocks per step²
     gentle: float = 0.01  # of what a block falls by itself: how fast a new load may move what it rests on
     fall_speed: float = 2e-3  # of the narrowest block: what a block that falls may move in a step, where geometry moves
-    shortest_ramp: int = 500  # steps: a shorter ramp of a load is none
+    shortest_ramp: int = 500  # steps: a shorter ramp of a load is left out
     longest_ramp: int = 20_000  # steps
     stair: int = 20  # steps between the loads of a ramp
     follow_every: int = 50  # steps between two looks at where loads that follow blocks are: they hardly turn meanwhile
@@ -117,7 +119,7 @@ class RelaxationSettings:
     stair_of_strain: int = 1  # of blocks that swell or shrink, which else leap off each other: joints slip as they jump
 
     def stretched(self, factor: float) -> RelaxationSettings:
-        """Time steps longer by a factor than these, by lighter fictitious masses."""
+        """Return settings with time steps longer by a factor, by lighter fictitious masses."""
         names = ("fire_safety", "creep_safety", "combined_safety")
         safeties = {name: factor * getattr(self, name) for name in names}
         return replace(self, **safeties)
@@ -125,7 +127,8 @@ class RelaxationSettings:
 
 @dataclass(frozen=True)
 class ReliefSettings:
-    """Elastic closure of "auto" joints, which is taken back where blocks are at rest (engine/rigid_joints.py)."""
+    """Settings of relief: elastic closure of "auto" joints, taken back where blocks are at rest
+    (engine/rigid_joints.py)."""
 
     shown: float = 0.005  # of it, that geometry may show in a state that counts as an equilibrium, at most
     of_resolution: float = 0.25  # of the resolution of a load, that what is shown may cost
@@ -138,7 +141,7 @@ class ReliefSettings:
 
 @dataclass(frozen=True)
 class DoubtSettings:
-    """From where on a run warns about its own answer."""
+    """Thresholds from which a run warns about its own answer."""
 
     shear_low: float = 0.01  # ks/kn of given joints that structures were tested with
     shear_high: float = 10.0
@@ -160,7 +163,7 @@ class DoubtSettings:
 
 @dataclass(frozen=True)
 class Settings:
-    """All settings of the solvers, in groups by what they belong to."""
+    """Settings of the solvers, in groups by what they belong to."""
 
     stiffness: AutomaticStiffness = field(default_factory=AutomaticStiffness)
     detection: DetectionSettings = field(default_factory=DetectionSettings)
@@ -188,14 +191,14 @@ class Settings:
     doubts: DoubtSettings = field(default_factory=DoubtSettings)
 
     def changed(self) -> dict[str, Any]:
-        """The settings that differ from the default, by their path, such as "relaxation.tolerance"."""
+        """Return the settings that differ from the default, by their path, such as "relaxation.tolerance"."""
         if self is DEFAULT:
             return {}
         return dict(_differences(self, type(self)(), ""))
 
 
 def _differences(settings: Any, default: Any, path: str) -> Iterator[tuple[str, Any]]:
-    """Path and value of each setting of a record, and of the records in it, that is not as in the default record."""
+    """List path and value of each setting of a record, and of records in it, that differs from the default record."""
     for part in fields(settings):
         value, usual = getattr(settings, part.name), getattr(default, part.name)
         if is_dataclass(value):

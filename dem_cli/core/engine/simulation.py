@@ -105,7 +105,7 @@ class Simulation:
 
     @property
     def n_damped(self) -> int:
-        """Numbers that dampers remember of each contact point."""
+        """Number of values that dampers store for each contact point."""
         return 0
 
     @property
@@ -114,7 +114,7 @@ class Simulation:
         return self.settings.detection.skin
 
     def _track(self, n_memory: int, reach: float) -> JointTracking:
-        """The joints of the blocks where they start."""
+        """Find the joints of the blocks where they start."""
         moves = self.kinematics == "large"
         return JointTracking(
             self.model, self.bodies, self.properties, moves, n_memory, self.smallest, reach, self.settings.detection
@@ -124,49 +124,49 @@ class Simulation:
 
     @property
     def joints(self) -> Joints:
-        """The joints that there are now."""
+        """Present joints."""
         return self.tracking.joints
 
     @property
     def geometry(self) -> JointGeometry:
-        """Their geometry."""
+        """Geometry of the present joints."""
         return self.tracking.geometry
 
     @property
     def contacts(self) -> Contacts:
-        """Their contact points."""
+        """Contact points of the present joints."""
         return self.tracking.contacts
 
     @property
     def detections(self) -> int:
-        """How often joints were looked for."""
+        """Number of contact detections so far."""
         return self.tracking.detections
 
     def detect(self) -> None:
-        """New faces after large motion; memory follows the contact points."""
+        """Detect new faces after large motion; memory follows the contact points."""
         self.tracking.detect(self.bodies)
         self._take_joints()
 
     def follow_faces(self) -> None:
-        """New faces where that is due."""
+        """Detect new faces where that is due."""
         if self.kinematics == "large":
             if self.tracking.due(self.bodies):
                 self.detect()
             self.control[slot.TRAVEL_LIMIT] = self.tracking.farthest
 
     def forces_on_second(self) -> np.ndarray:
-        """Forces of all contact points on the second block of their joint [N], (n_points, d)."""
+        """Compute the forces of all contact points on the second block of their joint [N], (n_points, d)."""
         contacts = self.measured()
         return along_frames(self.joints.frames, np.column_stack([contacts.normal, contacts.shear]))
 
     def measured(self) -> Contacts:
-        """Contacts with the gaps of this instant; frames, levers and points of the joints follow, nothing else."""
+        """Measure the gaps of this instant; frames, levers and points of the joints follow, nothing else."""
         if self._gauge is None or not self._gauge.fits(self.tracking):
             self._gauge = Gauge(self.tracking)
         return self._gauge.measured(self.tracking, self.bodies)
 
     def _take_joints(self) -> None:
-        """What follows from other joints: tiles, masses, and how long a compiled call may be."""
+        """Update tiles, masses and the length of a compiled call for new joints."""
         detection = self.settings.detection
         self.tiled = self._in_tiles()
         if self.tiled:
@@ -178,7 +178,7 @@ class Simulation:
         self.set_masses()
 
     def _in_tiles(self) -> bool:
-        """Whether joints are worked on many at once; few are not worth another kernel."""
+        """Test whether joints are computed many at once in tiles; few are not worth another kernel."""
         if self.kinematics != "fixed" or self.model.n_modes or self.law.of_lanes is None:
             return False
         if self.integrates and self.model.dimension > 2:  # outlines have no form for lanes
@@ -186,7 +186,7 @@ class Simulation:
         return len(self.joints.kn) >= self.settings.detection.tiled_from
 
     def set_masses(self) -> None:
-        """Fictitious masses for the present joints; the change of kinetic energy goes to damping."""
+        """Set fictitious masses for the present joints; the change of kinetic energy goes to damping."""
         before = self.kinetic_energy()
         if self.kinematics == "large":
             self.measured()
@@ -215,7 +215,8 @@ class Simulation:
         return tuple(link.kind for link in self.links)
 
     def link_springs(self, along: bool = False) -> Springs | None:
-        """Springs that links are where the blocks are now, with what holds them back across; None: there are no links.
+        """Return the springs of links at the present places of blocks, with their lateral stiffness; None: no
+        links.
 
         along: the former alone.
         """
@@ -229,7 +230,7 @@ class Simulation:
     # -- stepping ----------------------------------------------------------------------------------
 
     def advance(self, n_steps: int, mode: int) -> None:
-        """n_steps steps of one mode (kernels.records), with detection when it is due. Raises KeyboardInterrupt."""
+        """Advance n_steps of one mode (kernels.records), with detection when it is due. Raises KeyboardInterrupt."""
         left, load = n_steps, 0.0
         longest = min(self.longest, self.settings.relaxation.follow_every) if self.loads_follow else self.longest
         while left > 0:
@@ -244,11 +245,12 @@ class Simulation:
 
     @property
     def loads_follow(self) -> bool:
-        """Whether loads go along with blocks."""
+        """Test whether loads follow their blocks."""
         return self.following is not None
 
     def present_loads(self) -> tuple[np.ndarray, np.ndarray]:
-        """Dead and live loads of all blocks as they are now, about the centroids [N, N m], (n_blocks, d + r) each."""
+        """Return dead and live loads of all blocks as they are now, about the centroids [N, N m], (n_blocks, d +
+        r) each."""
         dead, live = self.model.dead_loads, self.model.live_loads
         if self.following is None:
             return dead, live
@@ -256,18 +258,18 @@ class Simulation:
         return dead + change(turned, dead=True), live + change(turned, dead=False)
 
     def turn_loads(self) -> None:
-        """Takes along loads that follow their blocks to where these are."""
+        """Move loads that follow their blocks to where these are."""
         if self.loads_follow:
             dead, live = self.present_loads()
             self.loads.dead[:] = np.where(self.model.held, 0.0, dead)
             self.loads.live[:] = np.where(self.model.held, 0.0, live * self.live_scale)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What a copy takes along: not the compiled code that this one is bound to."""
+        """Return the state of a copy, without the compiled code that this one is bound to."""
         return self.__dict__ | {"_scene": (None,), "_loop": None, "_stiff": (None,), "_gauge": None}
 
     def guard_of_kept(self) -> Callable[[Any], None]:
-        """What looks at the state of a checkpoint that came back to it (engine/kept_scene.py)."""
+        """Return the check of a state that came back from a checkpoint (engine/kept_scene.py)."""
         return guard_of(self)
 
     def compile(self) -> None:
@@ -277,7 +279,7 @@ class Simulation:
         self.control[:] = control
 
     def _step(self, n_steps: int, mode: int) -> int:
-        """A call of the compiled loop: how many steps it did before joints had to be looked for."""
+        """Call the compiled loop; returns the steps done before joints had to be detected."""
         threads = self.threads if n_steps > 0 and threads_may_share() else 1
         members = self.tracking.assemble(self.n_in_lanes, threads) if self.tiled else 1
         scene = (
@@ -300,17 +302,18 @@ class Simulation:
 
     @property
     def order_within_blocks(self) -> int:
-        """Order of the polynomials that displacements within blocks are, as engine/loops.py has them."""
+        """Polynomial order of displacements within blocks, as engine/loops.py has them."""
         return QUADRATIC if len(self.model.mode_shapes) else LINEAR if self.model.n_modes else RIGID
 
     @property
     def n_in_lanes(self) -> int:
-        """Numbers that tiles keep of each joint: those that the law reads there, and whether its face is elastic."""
+        """Number of values that tiles store for each joint: those that the law reads there, and whether its face
+        is elastic."""
         return self.law.n_of_lanes + self.integrates
 
     @property
     def integrates(self) -> bool:
-        """Whether there are faces over which pressure is integrated."""
+        """Test whether there are faces over which pressure is integrated."""
         return len(self.contacts.lumped) > 0
 
     @property
@@ -319,7 +322,7 @@ class Simulation:
         return self.bodies.velocities[:, : self.model.rotations.stop]
 
     def accelerations(self, blocks: np.ndarray) -> np.ndarray:
-        """Of the last step, per unit of the solver's time, (n, d + r)."""
+        """Return accelerations in the last step, per unit of the solver's time, (n, d + r)."""
         columns = slice(self.model.rotations.stop)
         return self.bodies.unbalanced[blocks, columns] * self.loads.inverse_masses[blocks, columns]
 
@@ -330,7 +333,7 @@ class Simulation:
         self.ledger[slot.DAMPING] += before - self.kinetic_energy()
 
     def set_load(self, multiplier: float) -> None:
-        """Constant load; with a tilting table the dead loads turn with it (multiplier = tan θ)."""
+        """Set a constant load; with a tilting table the dead loads turn with it (multiplier = tan θ)."""
         cosine = 1.0 / np.sqrt(1.0 + multiplier**2) if self.tilting else 1.0
         self.control[slot.DEAD_FACTOR] = cosine
         self.control[slot.LIVE_FACTOR] = multiplier * cosine
@@ -341,7 +344,7 @@ class Simulation:
         return self.over_share(self.control[slot.LIVE_FACTOR])
 
     def over_share(self, load: float) -> float:
-        """An internal multiplier over the share of the dead loads: without end on a table that stands upright."""
+        """Divide an internal multiplier by the share of the dead loads: infinite on a table that stands upright."""
         share = self.control[slot.DEAD_FACTOR]
         if share > 0.0:
             return load / share
@@ -354,7 +357,7 @@ class Simulation:
 
     @property
     def dead_share(self) -> float:
-        """Share of the dead loads that is on; a tilted table has less of all loads."""
+        """Share of the dead loads that is applied; a tilted table has less of all loads."""
         return self.control[slot.DEAD_FACTOR]
 
     @property
@@ -364,12 +367,12 @@ class Simulation:
 
     @property
     def creep_mode(self) -> int:
-        """The mode of a creep (kernels.records)."""
+        """Solver mode of a creep (kernels.records)."""
         return slot.TILT_CREEP if self.tilting else slot.CREEP
 
     @property
     def guided_mode(self) -> int:
-        """The mode of a relaxation at a prescribed displacement of the live load (kernels.records)."""
+        """Solver mode of a relaxation at a prescribed displacement of the live load (kernels.records)."""
         return slot.TILT_GUIDED if self.tilting else slot.GUIDED
 
     @property
@@ -382,7 +385,8 @@ class Simulation:
         return float(self.control[slot.UNBALANCED])
 
     def use(self, safety: float, damping: float | None = None, change: float = 0.0) -> None:
-        """Fictitious masses with another safety; damping against the velocity (None: local) and the change of force."""
+        """Set fictitious masses with another safety; damping against the velocity (None: local) and the change of
+        force."""
         damping = self.settings.relaxation.local_damping if damping is None else damping
         self.control[slot.DAMP], self.control[slot.DAMP_CHANGE] = damping, change
         if safety != self.safety:
@@ -390,35 +394,36 @@ class Simulation:
             self.set_masses()
 
     def use_combined_damping(self) -> None:
-        """Damping against the velocity and the change of force: what a constant load settles or fails with."""
+        """Damp against the velocity and the change of force, under which a constant load settles or fails."""
         relaxation = self.settings.relaxation
         self.use(relaxation.combined_safety, relaxation.combined_damping, relaxation.combined_damping)
 
     def limit_speed(self, limit: float) -> None:
-        """Largest motion of a centroid or of a corner about it in a step [m]: pseudo-time is no time to fall freely."""
+        """Limit the motion of a centroid or of a corner about it in a step [m]: blocks do not fall freely in
+        pseudo-time."""
         self.loads.speed_limits[:] = limit
         self.loads.speed_limits[:, self.model.rotations] /= self.shape.radii[:, None]
 
     # -- what analyses write (where blocks are put: engine/placement/moves.py) --------------------------
 
     def set_dead_share(self, share: float) -> None:
-        """Dead loads times a share, while they are put on."""
+        """Scale the dead loads by a share, while they are applied."""
         self.control[slot.DEAD_FACTOR] = share
 
     def prescribe_rate(self, rate: float) -> None:
-        """Rate of the live load's own displacement in a creep [J per step]."""
+        """Prescribe the rate of the live load's own displacement in a creep [J per step]."""
         self.control[slot.RATE] = rate
 
     def restart_relaxation(self) -> None:
-        """FIRE from its beginning: the first share of velocity that turns towards the force, no step uphill yet."""
+        """Restart FIRE: the first share of velocity that turns towards the force, no step uphill yet."""
         self.control[slot.FIRE_MIX], self.control[slot.SINCE_UPHILL] = self.control[slot.FIRE_START], 0.0
 
     def move_supports(self, velocities: np.ndarray) -> None:
-        """Velocities of the fixed blocks [m, rad per step], of all blocks (n_blocks, n_dof); zero stops them."""
+        """Set velocities of the fixed blocks [m, rad per step], of all blocks (n_blocks, n_dof); zero stops them."""
         self.bodies.velocities[self.model.fixed, : velocities.shape[1]] = velocities[self.model.fixed]
 
     def open_books(self, friction: float) -> None:
-        """A new ledger, in which the springs' energy and what friction took [J] were given from outside."""
+        """Open a new energy balance, in which elastic energy and friction work [J] were given from outside."""
         self.ledger[:] = 0.0
         self.ledger[slot.FRICTION] = friction
         self.ledger[slot.EXTERNAL] = friction + self.elastic_energy()
@@ -426,13 +431,13 @@ class Simulation:
         self.contacts.exchanged[:] = 0.0
 
     def count_from(self, steps: int) -> None:
-        """Steps that were done before this simulation took over."""
+        """Add the steps that were done before this simulation took over."""
         self.steps = steps
 
     # -- state -------------------------------------------------------------------------------------
 
     def save(self) -> SavedState:
-        """A copy of everything that changes, for `restore`."""
+        """Copy everything that changes, for `restore`."""
         return SavedState(
             Bodies(*(a.copy() for a in self.bodies)),
             Contacts(*(a.copy() for a in self.contacts)),
@@ -447,7 +452,7 @@ class Simulation:
         )
 
     def restore(self, saved: SavedState) -> None:
-        """Back to a saved state (steps go on counting)."""
+        """Restore a saved state (steps go on counting)."""
         for target, source in zip(self.bodies, saved.bodies, strict=True):
             target[...] = source
         contacts = Contacts(*(a.copy() for a in saved.contacts))
@@ -463,20 +468,21 @@ class Simulation:
     # -- energy ------------------------------------------------------------------------------------
 
     def kinetic_energy(self) -> float:
-        """Of all blocks, with the masses that they have now [J]."""
+        """Compute the kinetic energy of all blocks, with the masses that they have now [J]."""
         inverse = self.loads.inverse_masses
         moving = inverse > 0.0
         return 0.5 * float((self.bodies.velocities[moving] ** 2 / inverse[moving]).sum())
 
     def elastic_energy(self) -> float:
-        """In the springs of the joints and of links, and in blocks that deform [J]."""
+        """Compute the elastic energy of joints and links, and of blocks that deform [J]."""
         normal = self.tracking.arrays().pressed.sum()
         shear = ((self.contacts.shear**2).sum(axis=1) / self._stiffness()[1]).sum()
         inside = (self.shape.mode_stiffness * self.bodies.modes**2).sum() if self.model.n_modes else 0.0
         return 0.5 * float(normal + shear + inside) + elastic_energy_of_links(self.links)
 
     def _stiffness(self) -> tuple[np.ndarray, np.ndarray]:
-        """Of all contact points along normal and tangents, 1 where there is none; that of fixed joints is kept."""
+        """Return the stiffness of all contact points along normal and tangents, 1 without any; that of fixed
+        joints is cached."""
         joints = self.joints
         if joints is not self._stiff[0]:
             found = tuple(np.where(stiffness > 0, stiffness, 1.0) for stiffness in (joints.kn, joints.ks))
@@ -484,10 +490,10 @@ class Simulation:
         return self._stiff[1:]
 
     def books(self) -> Books:
-        """The energy ledger as it stands."""
+        """Return the energy balance as it stands."""
         return Books(self.ledger, self.kinetic_energy(), self.elastic_energy())
 
     def places(self) -> np.ndarray:
-        """Centroids and turned angles (times the radius of the block) [m], (n_blocks, d + r)."""
+        """Return centroids and turned angles (times the radius of the block) [m], (n_blocks, d + r)."""
         turned = rotation_vectors(self.bodies.orientations)
         return np.column_stack([self.bodies.positions, turned * self.shape.radii[:, None]])

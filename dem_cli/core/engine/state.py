@@ -13,7 +13,7 @@ NONE_MEET = np.zeros(0, bool)
 
 
 class Carriers(NamedTuple):
-    """What carried the free blocks of a time history at its start: pairs of a block and a face of another one."""
+    """Supports of the free blocks at the start of a time history: pairs of a block and a face of another one."""
 
     blocks: np.ndarray  # the block that is carried, ascending, (n,) int64
     faces: np.ndarray  # and a face (model.topology) that carries it, (n,) int64
@@ -24,7 +24,7 @@ NO_CARRIERS = Carriers(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0,
 
 
 class SavedState(NamedTuple):
-    """Everything of a simulation that changes, at one instant: what `restore` goes back to."""
+    """Saved state of a simulation: everything that changes, at one instant, which `restore` goes back to."""
 
     bodies: Bodies
     contacts: Contacts
@@ -39,7 +39,7 @@ class SavedState(NamedTuple):
 
 
 class Books(NamedTuple):
-    """The energy ledger of one instant, and what belongs to it [J]."""
+    """Energy balance of one instant, and what belongs to it [J]."""
 
     ledger: np.ndarray  # as kernels.records
     kinetic: float

@@ -7,7 +7,7 @@ from dem_cli.frozen_records import dataclass
 
 @dataclass(frozen=True)
 class ProofSettings:
-    """Proof of failure by power, and motion that no elastic structure makes.
+    """Settings of the proof of failure by power, and of motion that no elastic structure makes.
 
     Displacement at constant load grows fourfold when time doubles while it accelerates, twofold at constant speed.
     """
@@ -29,7 +29,7 @@ class ProofSettings:
 
 @dataclass(frozen=True)
 class StabilitySettings:
-    """Whether an equilibrium buckles: its tangent, and what blocks do that are moved a little along its shape."""
+    """Settings of the buckling test: tangent stiffness, and motion of blocks pushed a little along its shape."""
 
     acting: float = 1e-9  # of the largest normal force: points with more carry, and count in the tangent
     negative: float = 1e-10  # of the largest eigenvalue: what is below minus that is negative
@@ -42,7 +42,7 @@ class StabilitySettings:
 
 @dataclass(frozen=True)
 class LoadSearchSettings:
-    """The search of the failure load: probes, creep to an estimate, loads raised, failures tried again."""
+    """Settings of the failure load search: probes, creep to an estimate, loads raised, failures tried again."""
 
     probes: int = 4  # small loads tried for the compliance, each a tenth of the last
     probe_steps: int = 20_000  # for the equilibrium under one of them, at least
@@ -79,8 +79,8 @@ class LoadSearchSettings:
     beyond: float = 0.35  # ... and the one above it
     small_steps: int = 200  # to the power of two above a load on which histories differ; 100 to 400 agree within 0.3 %
     least_of_fewest: float = 0.5  # of the fewest steps of an equilibrium so far, that small steps take: 0.6 to 1.3
-    light: float = 0.05  # load, over the weights, below which balance is asked for the more closely the smaller it is
-    noise: float = 3.0  # times what round-off leaves of balance: less is not asked for; 0.7 to 2.2 times were measured
+    light: float = 0.05  # load, over the weights, below which balance is required the more closely the smaller it is
+    noise: float = 3.0  # times what round-off leaves of balance: less is not required; 0.7 to 2.2 times were measured
     unbalanced: float = 0.5  # resolutions of a load, that this may be at most
     trial: int = 300_000  # steps of one trial until it is left undecided, at least; and
     trial_per_point: int = 100  # steps × number of contact points, and
@@ -100,7 +100,8 @@ class LoadSearchSettings:
 
 @dataclass(frozen=True)
 class WarmStartSettings:
-    """The path of a static solver, as a start or beside it: for which sizes, and when it has come to failure."""
+    """Settings of the static solver's path, as a start or beside it: for which sizes, and when it has come to
+    failure."""
 
     repeated: int = 1000  # blocks of one structure, beyond which no load is raised again in small steps
     beside_implicit: int = 300  # blocks of one structure, up to which the path is followed beside an implicit history
@@ -111,7 +112,8 @@ class WarmStartSettings:
 
 @dataclass(frozen=True)
 class ImplicitHistorySettings:
-    """Overdamped implicit steps under constant loads (statics/implicit_history.py): loads, steps, and verdicts."""
+    """Settings of overdamped implicit steps under constant loads (statics/implicit_history.py): loads, steps, and
+    verdicts."""
 
     blocks: int = 150  # of one structure in the plane, from which on it is quicker than the path and loads after it
     effort: float = 2e7  # factorisations × points before giving up
@@ -145,7 +147,7 @@ class ImplicitHistorySettings:
 
 @dataclass(frozen=True)
 class PostPeakSettings:
-    """The collapse at a prescribed rate, or under the load of failure."""
+    """Settings of the collapse at a prescribed rate, or under the load of failure."""
 
     elastic: float = 7e-4  # elastic displacement at failure that "auto" joints may show, in smallest edges
     steps: int = 200  # in which the rate passes the elastic displacement of a multiplier of one, at least
@@ -177,9 +179,10 @@ class PostPeakSettings:
 
 @dataclass(frozen=True)
 class DisplacementControlSettings:
-    """Equilibria at prescribed displacements of the live load, from gravity to far beyond the peak of the curve.
+    """Settings of equilibria at prescribed displacements of the live load, from gravity to far beyond the peak of
+    the curve.
 
-    Increments grow from a share of the elastic displacement to what the case asks for; ramps grow with their square
+    Increments grow from a share of the elastic displacement to the requested one; ramps grow with their square
     root, so that blocks are accelerated as much.
     """
 
@@ -211,7 +214,7 @@ class DisplacementControlSettings:
 
 @dataclass(frozen=True)
 class MechanismSettings:
-    """Who takes part in a failure, and how it is called."""
+    """Thresholds of the blocks and joints that take part in a failure, and of its name."""
 
     rocking: float = 0.02  # share of friction in the released work, below which nothing slides
     turns: float = 0.1  # rotation × size of the structure over the largest motion, below which nothing turns
@@ -224,7 +227,7 @@ class MechanismSettings:
 
 @dataclass(frozen=True)
 class SettlementSettings:
-    """How slowly supports move."""
+    """Settings of the rate at which supports move."""
 
     rows: int = 200  # looks along the way
     station: int = 10  # looks from one state that is kept to the next
@@ -234,7 +237,7 @@ class SettlementSettings:
 
 @dataclass(frozen=True)
 class SafetySettings:
-    """Safety analyses: loads of each run, and the bisection of the value."""
+    """Settings of safety analyses: loads of each run, and the bisection of the value."""
 
     shares: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98, 1.0)  # of the load, held one after the other
     near: float = 0.9  # a failure that near the whole load is tried again by halves of its step, down to

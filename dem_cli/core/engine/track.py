@@ -25,7 +25,8 @@ class Track:
         self.at_rest = 0.0  # of the live load under dead loads, as measures.live_travel [m]
 
     def row(self, stage: str, load: float | None = None) -> HistoryRow:
-        """The history row of this instant. load: internal multiplier, where that of the instant is not wanted."""
+        """Build the history row of this instant. load: internal multiplier, where that of the instant is not
+        wanted."""
         sim = self.sim
         load = sim.load if load is None else load
         travel = measures.live_travel(sim)
@@ -38,7 +39,7 @@ class Track:
         )  # fmt: skip
 
     def keep(self, stage: str) -> None:
-        """Remember a row until `flush`."""
+        """Store a row until `flush`."""
         self.kept.append(self.row(stage))
 
     def frame(self, stage: str) -> None:
@@ -51,7 +52,7 @@ class Track:
         self.observer.frame(frame)
 
     def flush(self) -> None:
-        """Hand over what was kept."""
+        """Hand over the stored rows."""
         for row in self.kept:
             self.observer.row(row)
         self.kept.clear()

@@ -1,4 +1,4 @@
-"""Tracking of joints: which faces meet now, found anew as blocks move; the memory of contact points follows them."""
+"""Tracking of joints: faces that meet now, detected anew as blocks move; the memory of contact points follows them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from dem_cli.core.model.model import Model
 
 
 class JointTracking:
-    """The joints and contact points of blocks that may move.
+    """Tracking of the joints and contact points of blocks that may move.
 
     moves      whether geometry does; else joints are those of the start for good
     n_memory   numbers that each contact point remembers
@@ -49,30 +49,30 @@ class JointTracking:
 
     @property
     def narrow(self) -> NarrowPhase:
-        """Who finds and places contact points; a module, which no copy of a simulation could take along."""
+        """Module that finds and places contact points; no copy of a simulation could include it."""
         return (motion_of if self.moves else geometry_of)(self.model.dimension)
 
     def take(self, arrays: JointArrays) -> None:
-        """From here on these are the joints."""
+        """Replace the present joints."""
         self.joints, self.geometry, self.contacts = arrays
 
     def arrays(self) -> JointArrays:
-        """All of the joints that there are now."""
+        """Return all arrays of the present joints."""
         return JointArrays(self.joints, self.geometry, self.contacts)
 
     def tile(self, n_numbers: int, threads: int) -> None:
-        """Puts joints that do not move into tiles, for a law that reads so many numbers of a joint there."""
+        """Sort joints that do not move into tiles, for a law that reads so many numbers of a joint there."""
         joints = self.joints
         if isinstance(joints, FixedJoints):
             n, d, members = self.model.n_blocks, self.model.dimension, self._of_use(threads)
             self.joints = joints._replace(tiles=tiled(joints.blocks, joints.starts, n, d, n_numbers, members))
 
     def _of_use(self, threads: int) -> int:
-        """How many of so many threads find work: one for each chunk of blocks but the first."""
+        """Return how many of so many threads find work: one for each chunk of blocks but the first."""
         return max(min(threads, (self.model.n_blocks - 1) // BLOCKS_OF_CHUNK), 1)
 
     def assemble(self, n_numbers: int, threads: int) -> int:
-        """A team for the next call of the loop over tiles: of at most so many threads; returns how many.
+        """Form a team of at most so many threads for the next call of the loop over tiles; returns how many.
 
         Tiles are made anew where they have no room for them, as a run has that goes on with more than it began with.
         """
@@ -102,18 +102,19 @@ class JointTracking:
         return built
 
     def faces_within(self, bodies: Bodies, distance: float) -> Faces:
-        """Pairs of faces that are nearer to each other than a distance [m], where the blocks are now."""
+        """Find pairs of faces that are nearer to each other than a distance [m], where the blocks are now."""
         found = self.narrow.find(self.model, bodies.corners, distance)
         return self._passed(self.properties.acting(self.model, found))
 
     def _passed(self, faces: Faces) -> Faces:
-        """Without those of parts that met corner to corner and have not passed each other since."""
+        """Remove faces of parts that met corner to corner and have not passed each other since."""
         if not self.unpassed.any():
             return faces
         return faces.where(same_rows(self.meetings.parts[self.unpassed], faces.parts) < 0)
 
     def _room(self, bodies: Bodies) -> np.ndarray:
-        """How far parts that met corner to corner may still move until one has passed the other [m], (n_meetings,).
+        """Compute how far parts that met corner to corner may move until one has passed the other [m],
+        (n_meetings,).
 
         By more than the elastic overlap there, and by more than what is no width of a joint.
         """
@@ -122,15 +123,15 @@ class JointTracking:
         return passing - self.meetings.shifts(bodies)
 
     def _look_ahead(self, travel: float, room: np.ndarray) -> None:
-        """Until when no corner can have passed another one. travel: of the farthest block up to now [m]; room: of
-        those that have not (n,) [m]."""
+        """Compute the travel before which no corner can have passed another one. travel: of the farthest block up
+        to now [m]; room: of those that have not (n,) [m]."""
         self.farthest = 0.5 * self.reach  # two may come towards each other
         if len(room):
             least = self.settings.looks * self.settings.passing * float(self.meetings.sizes[self.unpassed].min())
             self.farthest = min(self.farthest, travel + 0.5 * max(float(room.min()), least))
 
     def due(self, bodies: Bodies) -> bool:
-        """Whether a block has moved so far, or a corner so passed another one, that there may be other faces.
+        """Test whether a block has moved so far, or a corner so passed another one, that there may be other faces.
 
         Else `farthest` says how far blocks may move until the next look.
         """
@@ -144,7 +145,7 @@ class JointTracking:
         return False
 
     def detect(self, bodies: Bodies) -> None:
-        """New faces after large motion; memory follows the contact points."""
+        """Detect new faces after large motion; memory follows the contact points."""
         old = self.arrays()
         before = self.unpassed
         if before.any():
@@ -164,7 +165,8 @@ class JointTracking:
         self.detections += 1
 
     def _begin_unpressed(self, new: JointArrays, passed: np.ndarray) -> None:
-        """Joints of parts that have just passed each other, (n_meetings,) bool, press by what they close from now on.
+        """Start joints of parts that have just passed each other, (n_meetings,) bool, unpressed: only closing from
+        now on counts.
 
         How deep corners were inside each other meanwhile is no elastic overlap: nothing did that work. Time histories
         know no closure (engine/rigid_joints.py), and do not ask for it.
@@ -186,11 +188,11 @@ class Gauge:
         self.geometry, self.contacts = self.of.geometry.kept(), Contacts(*(a.copy() for a in self.of.contacts))
 
     def fits(self, tracking: JointTracking) -> bool:
-        """Whether these are still the joints."""
+        """Test whether these are still the joints that the gauge was made for."""
         return all(map(is_, self.of, tracking.arrays()))
 
     def measured(self, tracking: JointTracking, bodies: Bodies) -> Contacts:
-        """Contacts with the gaps of this instant; frames, levers and points of the joints follow, nothing else."""
+        """Measure the gaps of this instant; frames, levers and points of the joints follow, nothing else."""
         if tracking.moves:
             _copy([*self.of.geometry.kept(), *self.of.contacts], [*self.geometry, *self.contacts])
             tracking.narrow.place(self.of.joints, self.geometry, self.contacts, bodies)
@@ -199,7 +201,7 @@ class Gauge:
 
 
 def _copy(source: Iterable[np.ndarray], target: Iterable[np.ndarray]) -> None:
-    """Records of arrays, in place where they are not the same."""
+    """Copy records of arrays, in place where they are not the same."""
     for values, here in zip(source, target, strict=True):
         if here is not values:
             here[...] = values

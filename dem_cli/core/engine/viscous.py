@@ -1,4 +1,4 @@
-"""Damping in numbers: dashpots, mass damping, Maxwell elements, local damping; strains of blocks."""
+"""Viscous damping in numbers: dashpots, mass damping, Maxwell elements, local damping; strains of blocks."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from dem_cli.core.records.requests import MaxwellRequest
 
 @dataclass(frozen=True)
 class Damping:
-    """Damping in numbers: of joints, of masses, local, and of Maxwell elements."""
+    """Damping coefficients: of joints, of masses, local, and of Maxwell elements."""
 
     fraction: float = 0.0  # of critical, each joint at its own frequency
     stiffness: float = 0.0  # damping over stiffness of all joints [s]
@@ -29,16 +29,16 @@ class Damping:
 
     @property
     def in_joints(self) -> bool:
-        """Whether joints have anything but springs."""
+        """Test whether joints have anything but springs."""
         return self.fraction > 0.0 or self.stiffness > 0.0 or len(self.elements) > 0
 
     @property
     def stiffening(self) -> float:
-        """What Maxwell elements, whose springs lie beside those of the joints, multiply frequencies by."""
+        """Factor by which Maxwell elements, whose springs lie beside those of the joints, raise frequencies."""
         return math.sqrt(1.0 + float(self.elements[:, 0].sum()))
 
     def viscosities(self, model: Model, joints: Joints) -> np.ndarray:
-        """Damping over stiffness of each joint [s], (n_joints,): 2 ζ/ω, ω² = kn A/M with the reduced mass M."""
+        """Return damping over stiffness of each joint [s], (n_joints,): 2 ζ/ω, ω² = kn A/M with the reduced mass M."""
         found = np.full(len(joints.blocks), self.stiffness)
         if self.fraction > 0.0 and len(found):
             frequencies = joint_frequencies(model, joints)
@@ -49,13 +49,14 @@ class Damping:
 
 
 def joint_frequencies(model: Model, joints: Joints) -> np.ndarray:
-    """√(K/M) of each joint [rad/s]: K all its normal springs, M the reduced mass of its blocks, (n_joints,)."""
+    """Compute √(K/M) of each joint [rad/s]: K all its normal springs, M the reduced mass of its blocks,
+    (n_joints,)."""
     lightness = np.where(model.fixed, 0.0, 1.0 / model.masses)[joints.blocks].sum(axis=1)
     return np.sqrt(np.add.reduceat(joints.kn, joints.starts[:-1]) * lightness)
 
 
 def element_numbers(elements: tuple[MaxwellRequest, ...]) -> np.ndarray:
-    """Stiffness over that of the joint [-] and rate [1/s] of each, (n, 2).
+    """Return stiffness over that of the joint [-] and rate [1/s] of each Maxwell element, (n, 2).
 
     At its own frequency an element of stiffness share r loses r/2 of the joint's stiffness in quadrature: ratio r/4,
     over the joint's stiffness alone.
@@ -64,7 +65,8 @@ def element_numbers(elements: tuple[MaxwellRequest, ...]) -> np.ndarray:
 
 
 def strain_rates(model: Model, damping: Damping, dt: float) -> StrainRates:
-    """Of all blocks, for steps of dt [s]; empty where all are rigid.
+    """Build the damped mass and stiffness of strain rates of all blocks, for steps of dt [s]; empty where all are
+    rigid.
 
     Blocks are damped as joints are: in proportion to mass and stiffness, and each mode by a fraction of critical at
     its own frequency √(K/M). Damping is solved within the step, with all modes of a block, so that it limits no step.
@@ -90,7 +92,7 @@ def strain_rates(model: Model, damping: Damping, dt: float) -> StrainRates:
 
 
 def turned_loads(strained: StrainRates, loads: np.ndarray, turns: np.ndarray) -> np.ndarray:
-    """Loads on blocks (n_blocks, n_dof) that have turned by now, where velocities are mean spins.
+    """Compute loads on blocks (n_blocks, n_dof) that have turned by now, where velocities are mean spins.
 
     Forces and levers stay as they are drawn, which the block sees from elsewhere; −Wᵀ τ more on its modes. turns: as
     kernels.records.Bodies.

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float, float], None]
 ROUNDED = 1e-9  # of the widest gap that closes: round-off of where it is measured again
-LOWER, LEAST = "lower", "least"  # bounds of joints that do not dilate, which are found where they are asked for
+LOWER, LEAST = "lower", "least"  # bounds of joints that do not dilate, which are computed on request
 BOUNDED = (2,)  # dimensions in which these are known
 SETTLED = (2,)  # dimensions in which LOCKED leaves no question: out of plane joints may lock because they dilate
 
@@ -41,21 +41,22 @@ class LimitLoads(NamedTuple):
     structure: LimitStructure
     friction: np.ndarray  # coefficient of every point [-], (n_points,)
     associated: LimitLoad  # joints dilate as they slide: an upper bound
-    non_associated: Path | None  # joints do not; None where not asked for, or where the first answer leaves no question
+    non_associated: Path | None  # joints do not; None where not requested, or where the first answer leaves no question
     seconds: float  # wall time of the associated load, with detection and matrices
     path_seconds: float | None  # of the non-associated load
     no_path: str | None = None  # why there is no non-associated load, where the joints are not of the kind
-    lower: LowerBound | None = None  # below it nothing collapses; None where not asked for
-    least: LeastLoad | None = None  # of joints that do not dilate; None where not asked for
+    lower: LowerBound | None = None  # below it nothing collapses; None where not requested
+    least: LeastLoad | None = None  # of joints that do not dilate; None where not requested
 
     @property
     def in_space(self) -> bool:
-        """Whether joints slide in more than one direction, and walls may fail out of their plane."""
+        """Test whether joints slide in more than one direction, so that walls may fail out of their plane."""
         return self.associated.shear.shape[1] > 1
 
     @property
     def head_friction(self) -> float | None:
-        """What friction of head joints takes in the associated mechanism, over the load; None: there is no load.
+        """Return the share of the load that friction of head joints dissipates in the associated mechanism; None
+        without a load.
 
         There they dilate and wedge, as no real joint does: of walls that fail out of their plane the bound says little.
         """
@@ -66,7 +67,7 @@ class LimitLoads(NamedTuple):
         return float(taken / abs(found.multiplier))
 
     def summary(self) -> dict[str, Any]:
-        """What summary.json says under `limit_analysis`."""
+        """Return the entries of summary.json under `limit_analysis`."""
         found, ok = self.associated, self.associated.status == OK
         said = {
             "associated": found.multiplier if ok else None,
@@ -108,7 +109,7 @@ def limit_loads(
     heads_frictionless  no friction in joints steeper than 45° to the horizontal (thesis Table 5-3)
     associated_only     leave out the load of joints that do not dilate, which takes longer
     bounds              LOWER, LEAST or both, which take longer still
-    progress            told the load and the displacement of every increment of the path (limit.path)
+    progress            called with the load and the displacement of every increment of the path (limit.path)
 
     Raises UsageError without live loads, where the strength of the law is not held by straight lines, or where bounds
     are not known in so many dimensions.
@@ -140,9 +141,10 @@ def limit_loads(
 
 
 def with_path(found: LimitLoads, settings: LimitSettings) -> LimitLoads:
-    """The same with the load of joints that do not dilate, where it can be another: something slides in the mechanism.
+    """Add the failure load of joints that do not dilate, where sliding in the associated mechanism may make it
+    another.
 
-    As it was where the path does not apply: links, strength beside friction, no dead loads, or too many blocks for it.
+    Unchanged where the path does not apply: links, strength beside friction, no dead loads, or too many blocks for it.
     """
     structure, associated = found.structure, found.associated
     blocks, dimension = largest_structure(structure.joints.blocks, structure.model.fixed), structure.model.dimension
@@ -171,7 +173,7 @@ def _require_known(model: Model, bounds: Collection[str]) -> None:
 def _path(
     structure: LimitStructure, friction: np.ndarray, associated: LimitLoad, progress: Progress, settings: LimitSettings
 ) -> Path:
-    """The path to the load of joints that do not dilate.
+    """Trace the path to the failure load of joints that do not dilate.
 
     Where nothing slides in the mechanism of the associated load, joints that do not dilate may carry it as well: a
     plateau below it may be a rest on the way, and the load is followed on. One that is a failure stays.
@@ -191,7 +193,7 @@ def _path(
 def _with_bounds(
     found: LimitLoads, strength: Envelope, left: Envelope, bounds: Collection[str], settings: LimitSettings
 ) -> LimitLoads:
-    """The same with the bounds of joints that do not dilate, as far as they are asked for.
+    """Add the lower bound and the least load of joints that do not dilate, as `bounds` names them.
 
     left: of the strength, after sliding and opening for long.
     """
@@ -232,7 +234,7 @@ def require_scalable(model: Model, properties: JointProperties, law: Law) -> Non
 
 
 def taken_as_plane(properties: JointProperties) -> str | None:
-    """What is to be said of joints with a profile, which limit analysis does not see; None: there are none."""
+    """Return the warning that limit analysis ignores the profile of joints; None where no joint has one."""
     rough = [
         f"'{name}'"
         for name, layout in zip(properties.names, properties.layouts, strict=True)
@@ -242,13 +244,15 @@ def taken_as_plane(properties: JointProperties) -> str | None:
 
 
 def gaps_left_open(model: Model) -> str | None:
-    """What is to be said of gaps of the start, which rigid blocks at rest do not close; None: there are none."""
+    """Return the warning about gaps of the start, which rigid blocks at rest do not close; None where there are
+    none."""
     gaps = gaps_of_start(model)
     return f"limit analysis closes no gaps: {gap_words(model, gaps)}" if len(gaps.widths) else None
 
 
 def closing_gaps(model: Model) -> tuple[float, str] | None:
-    """Up to which share of the smallest edge gaps close like joints [-], and what is to be said of it; None: none do.
+    """Return the widest gap that closes like a joint [smallest edges], and the warning about it; None without such
+    gaps.
 
     For structures that nothing carries while they are open, such as tiers drawn one above the other to a few digits.
     """
@@ -267,7 +271,7 @@ def start_structure(
     bodies: Bodies | None = None,
     near: float = TOUCHING_GAP,
 ) -> LimitStructure:
-    """The structure with the joints of its first place, all of them plane, or of where blocks have moved to.
+    """Build the limit analysis structure from the joints at the start, all plane, or from blocks that have moved.
 
     Points at their ends are enough for joints with friction alone; where tension, cohesion or crushing of the `law` are
     shared among points, these are those of the DEM joint, so that both are the same joint. Points that are open carry
@@ -293,7 +297,7 @@ def load_where_it_rests(
     touch: tuple[float, float],
     settings: LimitSettings = DEFAULT_LIMIT,
 ) -> LimitLoad:
-    """The associated load of blocks that have moved, on joints as drawn from where they are now.
+    """Compute the associated failure load of blocks that have moved, on joints found where the blocks now are.
 
     model: with the loads that act there; bodies: as for `start_structure`; touch: gaps or overlaps of faces that touch
     in any case, and at most [m]. Blocks that have turned touch with corners: faces touch up to the smallest gap with
@@ -324,6 +328,7 @@ def gaps_that_touch(model: Model, touch: tuple[float, float]) -> Iterator[float]
 def load_of_points(
     model: Model, joints: Joints, closed: np.ndarray, law: Law, settings: LimitSettings = DEFAULT_LIMIT
 ) -> LimitLoad:
-    """The associated load on some points of the joints of the start; closed: which ones carry, (n_points,) bool."""
+    """Compute the associated load with some contact points of the start; closed: points that carry, (n_points,)
+    bool."""
     among = only_points(joints, closed)
     return associated_limit(structure_of(model, among), envelope_of(among, law), settings.associated)

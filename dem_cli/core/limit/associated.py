@@ -1,4 +1,4 @@
-"""The associated failure load of rigid blocks: the largest load in equilibrium with forces that the joints can carry.
+"""Associated failure load of rigid blocks: the largest load in equilibrium with forces that the joints can carry.
 
 Static theorem (Livesley 1978). Its dual is the mechanism of least work in which sliding joints also dilate by
 μ times the slip; where friction acts the load is therefore an upper bound of that of real, non-dilating joints. Where
@@ -55,7 +55,7 @@ NO_LINKS = np.zeros(0)
 
 
 class LimitLoad(NamedTuple):
-    """An associated failure load, with what is needed to trust it."""
+    """Associated failure load with its forces, mechanism and the errors that say whether to trust it."""
 
     status: str  # OK, FALLS, LOCKED, or GIVEN_UP with the reason
     multiplier: float | None  # of the live loads, as users know it; None where there is none
@@ -76,7 +76,8 @@ def slides(
     found: LimitLoad,
     settings: AssociatedSettings = DEFAULT_LIMIT.associated,
 ) -> bool:
-    """Whether friction takes part in the mechanism of a load that was found; else it is that of joints that rock open.
+    """Test whether friction dissipates work in the mechanism of a failure load; otherwise its joints only rock
+    open.
 
     friction: coefficient of every point [-], (n_points,)
     """
@@ -87,7 +88,8 @@ def slides(
 def sliding_share(
     friction: np.ndarray, found: LimitLoad, settings: AssociatedSettings = DEFAULT_LIMIT.associated
 ) -> float:
-    """What friction can take at most in any mechanism of a load that was found, over the load; infinite: not known.
+    """Bound the work of friction in any mechanism of a failure load, over the load; infinite where no bound is
+    known.
 
     In a mechanism whose work is the load the forces r that were found do no more than their gap: Σ r·w ≤ gap. Inside
     the cone, where slip s opens by μ s at least, r·w ≥ (μN − |T|) s, so that friction takes μN s ≤ gap μN/(μN − |T|):
@@ -106,7 +108,8 @@ def sliding_share(
 
 
 def work_of_friction(structure: LimitStructure, friction: np.ndarray, found: LimitLoad) -> np.ndarray:
-    """What friction takes at every point in the mechanism of a load that was found [N m], (n_points,)."""
+    """Compute the work that friction dissipates at every point in the mechanism of a failure load [N m],
+    (n_points,)."""
     motion = structure.compatibility @ found.velocities.ravel()[structure.free]
     slips = np.linalg.norm(motion.reshape(-1, structure.model.dimension)[:, 1:], axis=1)
     return friction * found.normal * slips
@@ -115,7 +118,7 @@ def work_of_friction(structure: LimitStructure, friction: np.ndarray, found: Lim
 def associated_limit(
     structure: LimitStructure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
 ) -> LimitLoad:
-    """The largest multiplier of the live loads that the structure carries with associated flow.
+    """Compute the largest multiplier of the live loads that the structure carries with associated flow.
 
     strength: of every point, see limit.cone.envelope_of.
     Status and forces tell apart: fails at a multiplier; does not stand without live load; never fails; not
@@ -135,10 +138,11 @@ def associated_limit(
 def carried(
     structure: LimitStructure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
 ) -> tuple[bool | None, float]:
-    """Whether any forces inside the envelope carry the dead loads, and the error of the proof; None: not known.
+    """Test whether any forces inside the envelope carry the dead loads; returns also the error of the proof; None:
+    unknown.
 
-    strength: as in associated_limit. False is a proof that nothing of this kind stands; True is none that it does:
-    joints that do not dilate may fail all the same.
+    strength: as in associated_limit. False is a proof that nothing of this kind stands; True does not prove that it
+    does: joints that do not dilate may fail all the same.
     """
     answer = _first_good(program_of(structure, strength, settings), standing, _judge_standing)
     return {OK: True, FALLS: False}.get(answer.status), answer.residual
@@ -149,7 +153,7 @@ def _first_good(
     solve: Callable[[Program, dict[str, Any]], ProgramSolution],
     judge: Callable[[Program, ProgramSolution], LimitLoad],
 ) -> LimitLoad:
-    """The first answer that passes; where none does, the last."""
+    """Return the first solver's answer that passes its check; where none does, the last."""
     iterations = 0
     for found in _answers(program, solve):
         look()
@@ -163,7 +167,7 @@ def _first_good(
 def _answers(
     program: Program, solve: Callable[[Program, dict[str, Any]], ProgramSolution]
 ) -> Iterator[ProgramSolution]:
-    """Answers of one solver after the other, each found when it is asked for."""
+    """Solve by one solver after the other, each only when its answer is needed."""
     if len(program.structure.free) >= program.settings.on_fronts:
         from dem_cli.core.limit.frontal_program import is_linear, solved_on_fronts
 
@@ -174,7 +178,7 @@ def _answers(
 
 
 def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
-    """Is this the largest load, or a proof that there is none?"""
+    """Judge a solution: the largest load, a proof that there is none, or neither."""
     if found.kind == UNBOUNDED:
         return _refusal(program, *_locked(program, found))
     if found.kind == IMPOSSIBLE:
@@ -203,7 +207,7 @@ def _judge_load(program: Program, found: ProgramSolution) -> LimitLoad:
 
 
 def _judge_standing(program: Program, found: ProgramSolution) -> LimitLoad:
-    """Do the dead loads have forces that carry them?"""
+    """Judge whether the dead loads are in equilibrium with forces that the joints can carry."""
     if found.kind == IMPOSSIBLE:
         return _refusal(program, *_falls(program, found))
     forces, axial = program.split(program.cone.forces(program.cone.admissible(found.amounts)))
@@ -215,7 +219,7 @@ def _judge_standing(program: Program, found: ProgramSolution) -> LimitLoad:
 
 
 def _falls(program: Program, found: ProgramSolution) -> tuple[str, float]:
-    """Status and error of the proof: a mechanism that no joint resists and that the dead loads drive.
+    """Prove by a mechanism without resistance, driven by the dead loads, that nothing stands: status and error.
 
     Error: power of all dead loads together, as a contact force, against the largest violation; over dead power.
     """
@@ -227,7 +231,7 @@ def _falls(program: Program, found: ProgramSolution) -> tuple[str, float]:
 
 
 def _locked(program: Program, found: ProgramSolution) -> tuple[str, float]:
-    """Status and error of the proof: contact forces in balance with live loads alone."""
+    """Prove by contact forces in balance with live loads alone that no load fails: status and error."""
     s, amounts = program.structure, program.cone.endless(found.amounts)
     unbalanced = (program.motion.T @ amounts + found.multiplier * s.live) / s.scales
     load = found.multiplier * float(np.abs(s.live / s.scales).max())
@@ -236,14 +240,14 @@ def _locked(program: Program, found: ProgramSolution) -> tuple[str, float]:
 
 
 def _proved(program: Program, claim: str, error: float, found: ProgramSolution) -> str:
-    """The claim, if its proof is good enough."""
+    """Accept a claimed status if the error of its proof is small enough."""
     if error <= program.settings.proof:
         return claim
     return f"{GIVEN_UP}: the solver says {found.said}, its proof errs by {error:.1e}"
 
 
 def _work(program: Program, velocities: np.ndarray, amounts: np.ndarray | None = None) -> float:
-    """What yields at the caps in a mechanism, and the violations elsewhere against forces that are given."""
+    """Compute the work at the caps in a mechanism, and of the given forces on its violations elsewhere."""
     cone, motion = program.cone, program.motion @ velocities
     work = float(product(cone.most, cone.yielding(motion)))
     if amounts is not None:
@@ -252,7 +256,7 @@ def _work(program: Program, velocities: np.ndarray, amounts: np.ndarray | None =
 
 
 def _refusal(program: Program, status: str, residual: float = 0.0) -> LimitLoad:
-    """An answer without a multiplier."""
+    """Build the result of a program that has no multiplier."""
     nothing, forces = (
         np.zeros((program.structure.model.n_blocks, program.structure.n_dof)),
         np.zeros_like(program.split(program.cone.first)[0]),

@@ -1,4 +1,4 @@
-"""The least load of joints that slide without dilating: over all collapse states, a mixed-integer program; 2D.
+"""Least load of joints that slide without dilating: a mixed-integer program over all collapse states; 2D.
 
 Lo Bianco and Mazzarella (thesis 3.1.3, equations 3-5; Baggio and Trovalusci 2000; Ferris and Tin-Loi 2001):
 
@@ -30,7 +30,7 @@ from dem_cli.interrupts import look
 
 
 class CollapseState(NamedTuple):
-    """A collapse state: forces, a mechanism, and which joints it opens, crushes and slides."""
+    """Collapse state: forces, a mechanism, and the joints it opens, crushes and slides."""
 
     load: float  # multiplier of the live loads, as users know it
     forces: np.ndarray  # N of all points, T of all joints [mean weights], (n_points + n_joints,)
@@ -49,7 +49,7 @@ class StateSearch(NamedTuple):
 
 
 class CollapseStates:
-    """The program of a structure; unknowns: N, T, λ, u, a, q, s₊, s₋, then the choices of a, q, s₊, s₋."""
+    """Mixed-integer program of a structure; unknowns: N, T, λ, u, a, q, s₊, s₋, then the choices of a, q, s₊, s₋."""
 
     def __init__(self, structure: LimitStructure, strength: Envelope, upper: float, settings: LeastSettings) -> None:
         self.settings, self.structure = settings, structure
@@ -156,7 +156,7 @@ class CollapseStates:
         return vstack([row for row, _ in rows]).tocsr(), np.concatenate([top for _, top in rows])
 
     def _rates(self, count: int) -> csr_matrix:
-        """A rate is nothing without its choice."""
+        """Build the rows that make a rate zero unless its choice is made."""
         rates = csr_matrix((np.ones(count), (np.arange(count), self.rates.start + np.arange(count))), (count, self.n))
         chosen = csr_matrix(
             (np.ones(count), (np.arange(count), self.choices.start + np.arange(count))), (count, self.n)
@@ -188,7 +188,8 @@ class CollapseStates:
     # -- search ----------------------------------------------------------------------------------------
 
     def search(self, below: float, near: CollapseState | None = None, changed: int = 0) -> StateSearch:
-        """The least state under a load; near: a state from which it may differ in so many choices only.
+        """Search for the least collapse state under a load; near: a state from which it may differ in so many
+        choices only.
 
         Choices that the state leaves open, as both factors are nothing, do not count.
         """
@@ -220,7 +221,7 @@ class CollapseStates:
         return StateSearch(state, float(max(proved, 0.0)) * self.statics.load, complete, nodes)
 
     def chosen(self, forces: np.ndarray, velocities: np.ndarray, weight: float) -> np.ndarray:
-        """The choices of a state that is one but for errors, (n_choices,): the smaller factor is nothing.
+        """Infer the choices of an approximate collapse state, (n_choices,): the smaller factor counts as zero.
 
         forces: N of points, T of joints; weight: of rates, over the largest of each kind.
         """
@@ -229,7 +230,7 @@ class CollapseStates:
         return (weight * rates > reserves / max(float(forces.max(initial=0.0)), 1e-300)).astype(float)
 
     def factors(self, state: CollapseState) -> tuple[np.ndarray, np.ndarray]:
-        """The two factors of every choice: rates over the largest, reserves of strength [W], (n_choices,)."""
+        """Compute both factors of every choice: rates over the largest, reserves of strength [W], (n_choices,)."""
         statics, limits = self.statics, self.limits
         normal, shear = state.forces[: statics.n_points], state.forces[statics.n_points :]
         opening, slide = statics.opening @ state.velocities, statics.sliding @ state.velocities
@@ -248,7 +249,7 @@ class CollapseStates:
         return (rates > small) | (reserves > small)
 
     def solved(self, choices: np.ndarray) -> CollapseState | None:
-        """The least load with these choices; None: there is no such state."""
+        """Compute the least load with these choices by a linear program; None where no such state exists."""
         from scipy.optimize import linprog
 
         low, high = self._bounds()

@@ -17,51 +17,51 @@ ROOT = float(np.sqrt(2.0))
 
 
 class CompiledCones(SlipCones):
-    """As SlipCones."""
+    """Friction cones and slips of points in space, compiled (see SlipCones)."""
 
     def fastest(self, x: np.ndarray, change: np.ndarray) -> tuple[float, float]:
-        """As Slips has it."""
+        """Compute the fastest relative fall and growth of the variables under a change (see Slips.fastest)."""
         found = np.zeros(2)
         find_fastest(x.reshape(8, -1), change.reshape(8, -1), found)
         return float(found[0]), float(found[1])
 
     def moved(self, x: np.ndarray, change: np.ndarray, length: float = 1.0) -> np.ndarray:
-        """As Slips has it."""
+        """Move the variables along a change and keep them inside their cones (see Slips.moved)."""
         found = np.empty_like(x)
         move(x.reshape(8, -1), change.reshape(8, -1), float(length), found.reshape(8, -1))
         return found
 
     def linear(self, x: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> CompiledStiffness:
-        """As Slips has it."""
+        """Linearise the complementarity of friction and slip (see Slips.linear)."""
         return CompiledStiffness(polar(x), friction, ks, stiff_n)
 
 
 class CompiledStiffness(ConeStiffness):
-    """As ConeStiffness."""
+    """Linearised complementarity of friction and slip, compiled (see ConeStiffness)."""
 
     def towards(self, tau: np.ndarray, off: np.ndarray) -> np.ndarray:
-        """As SlipStiffness has it."""
+        """Compute the change of the slips while forces stay (see SlipStiffness.towards)."""
         found, wanted = np.empty_like(off), np.ascontiguousarray(tau).reshape(2, -1)
         slip_towards(wanted, self.at.c, self.at.a, off.reshape(3, -1), self.d, self.ratios, self.turning,
                      found.reshape(3, -1))  # fmt: skip
         return found
 
     def rubbed(self, forced: np.ndarray, off_slide: np.ndarray, push: np.ndarray) -> np.ndarray:
-        """As SlipStiffness has it."""
+        """Compute the change of the shear forces while no block moves (see SlipStiffness.rubbed)."""
         found = np.empty_like(off_slide)
         rub(forced.reshape(3, -1), off_slide.reshape(2, -1), push, self.d, self.stiff_along, self.stiff_across,
             self.drag, found.reshape(2, -1))  # fmt: skip
         return found
 
     def sheared(self, rubbed: np.ndarray, slide: np.ndarray, closing: np.ndarray) -> np.ndarray:
-        """As SlipStiffness has it."""
+        """Compute the change of the shear forces as blocks slide (see SlipStiffness.sheared)."""
         found = np.empty_like(rubbed)
         shear(rubbed.reshape(2, -1), slide.reshape(2, -1), closing, self.d, self.stiff_along, self.stiff_across,
               self.coupling, found.reshape(2, -1))  # fmt: skip
         return found
 
     def slipped(self, forced: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """As SlipStiffness has it."""
+        """Compute the change of the slips as the reserves change (see SlipStiffness.slipped)."""
         found = np.empty_like(forced)
         slip_back(forced.reshape(3, -1), change.reshape(3, -1), self.d, self.ratios, self.turning,
                   found.reshape(3, -1))  # fmt: skip
@@ -70,7 +70,8 @@ class CompiledStiffness(ConeStiffness):
 
 @kernel
 def find_fastest(x, change, found):
-    """Fastest fall and growth of anything in x (8, n) by a change (8, n), relative to itself, into found (2,)."""
+    """Find the fastest fall and growth of any variable in x (8, n) by a change (8, n), relative to itself, into
+    found (2,)."""
     low, high = 0.0, 0.0
     for i in range(x.shape[1]):
         normal, opening = change[0, i] / x[0, i], change[4, i] / x[1, i]
@@ -88,20 +89,20 @@ def find_fastest(x, change, found):
 
 @inline
 def _turned(change, row, i, d1, d2):
-    """First component, and the others along and across d."""
+    """Return the first component, and the other two along and across the direction d."""
     one, two = change[row + 1, i], change[row + 2, i]
     return change[row, i], d1 * one + d2 * two, d1 * two - d2 * one
 
 
 @inline
 def _turns(first, second):
-    """slip_cones._turns of one point."""
+    """Test whether the element of one point turns as it moves (slip_cones._turns)."""
     return abs(second - first) > TURNS * (first + second)
 
 
 @kernel
 def move(x, change, length, found):
-    """slip_cones.Polar.moved: x (8, n) after so much of a change (8, n) into found."""
+    """Move x (8, n) by a share of a change (8, n) into found (slip_cones.Polar.moved)."""
     for i in range(x.shape[1]):
         c1, c2, a1, a2, d1, d2 = x[2, i], x[3, i], x[4, i], x[5, i], x[6, i], x[7, i]
         dc, dt1, dt2 = length * change[1, i], length * change[2, i], length * change[3, i]
@@ -121,7 +122,7 @@ def move(x, change, length, found):
 
 @inline
 def _yielding(change, i, d1, d2, ratios, turning):
-    """slip_cones.ConeStiffness._yielding of one point."""
+    """Compute the slips that a change of the reserve of one point takes back (slip_cones.ConeStiffness._yielding)."""
     lead, along, across = _turned(change, 0, i, d1, d2)
     one, two, across = ratios[0, i] * (lead - along), ratios[1, i] * (lead + along), turning[i] * across
     half = 0.5 * (two - one)
@@ -130,14 +131,15 @@ def _yielding(change, i, d1, d2, ratios, turning):
 
 @inline
 def _stiff(one, two, d1, d2, stiff_along, stiff_across):
-    """slip_cones.ConeStiffness._stiff of one point."""
+    """Compute the shear forces of a slide at one point (slip_cones.ConeStiffness._stiff)."""
     along, across = stiff_along * (d1 * one + d2 * two), stiff_across * (d1 * two - d2 * one)
     return along * d1 - across * d2, along * d2 + across * d1
 
 
 @kernel
 def slip_towards(tau, c, a, off, d, ratios, turning, found):
-    """ConeStiffness.towards; tau, c, a, d, ratios (2, n), off, found (3, n), turning (n,)."""
+    """Compute the change of slips while forces stay (ConeStiffness.towards); tau, c, a, d, ratios (2, n), off,
+    found (3, n), turning (n,)."""
     for i in range(turning.size):
         d1, d2 = d[0, i], d[1, i]
         one, two = (tau[0, i] - c[0, i] * a[0, i]) / c[0, i], (tau[1, i] - c[1, i] * a[1, i]) / c[1, i]
@@ -149,7 +151,8 @@ def slip_towards(tau, c, a, off, d, ratios, turning, found):
 
 @kernel
 def slip_back(forced, change, d, ratios, turning, found):
-    """ConeStiffness.slipped; forced, change, found (3, n), d, ratios (2, n), turning (n,)."""
+    """Compute the change of slips with the reserves (ConeStiffness.slipped); forced, change, found (3, n), d,
+    ratios (2, n), turning (n,)."""
     for i in range(turning.size):
         lead, first, second = _yielding(change, i, d[0, i], d[1, i], ratios, turning)
         found[0, i], found[1, i], found[2, i] = forced[0, i] - lead, forced[1, i] - first, forced[2, i] - second
@@ -157,7 +160,8 @@ def slip_back(forced, change, d, ratios, turning, found):
 
 @kernel
 def rub(forced, off_slide, push, d, stiff_along, stiff_across, drag, found):
-    """ConeStiffness.rubbed; forced (3, n), off_slide, d, drag, found (2, n), push and stiffness (n,)."""
+    """Compute shear forces of slips and normal forces (ConeStiffness.rubbed); forced (3, n), off_slide, d, drag,
+    found (2, n), push and stiffness (n,)."""
     for i in range(push.size):
         one, two = forced[1, i] + off_slide[0, i], forced[2, i] + off_slide[1, i]
         first, second = _stiff(one, two, d[0, i], d[1, i], stiff_along[i], stiff_across[i])
@@ -166,7 +170,8 @@ def rub(forced, off_slide, push, d, stiff_along, stiff_across, drag, found):
 
 @kernel
 def shear(rubbed, slide, closing, d, stiff_along, stiff_across, coupling, found):
-    """ConeStiffness.sheared; rubbed, slide, d, coupling, found (2, n), closing and stiffness (n,)."""
+    """Compute shear forces of sliding and opening (ConeStiffness.sheared); rubbed, slide, d, coupling, found (2,
+    n), closing and stiffness (n,)."""
     for i in range(closing.size):
         first, second = _stiff(slide[0, i], slide[1, i], d[0, i], d[1, i], stiff_along[i], stiff_across[i])
         found[0, i] = rubbed[0, i] + (coupling[0, i] * closing[i] - first)

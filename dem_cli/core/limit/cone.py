@@ -1,4 +1,4 @@
-"""The forces of every contact point, by the cones that span them: (N, T) = first + Σ shares · amounts.
+"""Friction cones of contact points: forces (N, T) = first + Σ shares · amounts, by the cones that span them.
 
 A joint law enters limit analysis through straight lines (laws/envelope.py): friction alone is the cone |T| ≤ μ N;
 tension, cohesion and crushing move its tip and cut it off. In the plane the cone has two sides, and amounts g ≥ 0 of
@@ -23,7 +23,8 @@ from dem_cli.errors import UsageError
 
 
 class Cone(NamedTuple):
-    """Members: first the round cones, of d amounts each, then the generators, of one; the first amount leads."""
+    """Generators of the strength cones: first the round cones, of d amounts each, then single generators; the
+    first amount leads."""
 
     points: np.ndarray  # point of each amount, (n_amounts,) int64
     shares: np.ndarray  # its normal and shear force [-], (n_amounts, d)
@@ -35,12 +36,12 @@ class Cone(NamedTuple):
 
     @property
     def dimension(self) -> int:
-        """2 or 3."""
+        """Number of dimensions, 2 or 3."""
         return self.shares.shape[1]
 
     @property
     def leading(self) -> np.ndarray:
-        """The leading amount of every member, (n_members,)."""
+        """Indices of the leading amount of every member, (n_members,)."""
         curved = self.dimension * self.n_round
         return np.concatenate([np.arange(0, curved, self.dimension), np.arange(curved, len(self.points))])
 
@@ -61,12 +62,12 @@ class Cone(NamedTuple):
         return self.first + np.column_stack(sums)
 
     def outside(self, motion: np.ndarray) -> np.ndarray:
-        """How far a motion (n_amounts,) is outside every member: what its leading amount lacks, (n_members,)."""
+        """Compute by how much a motion (n_amounts,) is inadmissible at every member, (n_members,)."""
         around, along = self._split(motion)
         return np.maximum(np.concatenate([np.linalg.norm(around[:, 1:], axis=1) - around[:, 0], -along]), 0.0)
 
     def admissible(self, amounts: np.ndarray) -> np.ndarray:
-        """The nearest amounts inside the members, shortened to what the caps allow, (n_amounts,)."""
+        """Project amounts onto the members of the cone, and shorten them to their caps, (n_amounts,)."""
         around, along = self._split(amounts)
         found, capped = np.concatenate([_nearest(around).ravel(), np.maximum(along, 0.0)]), self.cap >= 0
         if capped.any():
@@ -78,7 +79,7 @@ class Cone(NamedTuple):
         return found
 
     def endless(self, amounts: np.ndarray) -> np.ndarray:
-        """The nearest amounts inside the members that no cap limits, nothing of the others, (n_amounts,)."""
+        """Project amounts onto the members without a cap; zero at the others, (n_amounts,)."""
         around, along = self._split(amounts)
         found = np.concatenate([_nearest(around).ravel(), np.maximum(along, 0.0)])
         return np.where(self._of_members(self.cap < 0), found, 0.0)
@@ -91,17 +92,17 @@ class Cone(NamedTuple):
         return rates
 
     def _split(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Those of the round cones, (n_round, d), and of the generators."""
+        """Split values into those of the round cones, (n_round, d), and those of the generators."""
         curved = self.dimension * self.n_round
         return values[:curved].reshape(self.n_round, self.dimension), values[curved:]
 
     def _of_members(self, values: np.ndarray) -> np.ndarray:
-        """The value of its member for each amount, (n_amounts,)."""
+        """Repeat the value of each member for all its amounts, (n_amounts,)."""
         return np.concatenate([np.repeat(values[: self.n_round], self.dimension), values[self.n_round :]])
 
 
 def _nearest(amounts: np.ndarray) -> np.ndarray:
-    """The nearest amounts in round cones, (n, d)."""
+    """Project amounts onto round cones, (n, d)."""
     lead, length = amounts[:, 0], np.linalg.norm(amounts[:, 1:], axis=1)
     inside, opposite = length <= lead, length <= -lead
     middle = 0.5 * (lead + length)
@@ -111,7 +112,7 @@ def _nearest(amounts: np.ndarray) -> np.ndarray:
 
 
 class _Tips(NamedTuple):
-    """What the cones of all points look like, and which points have what."""
+    """Geometry of the cones of all points, and the points with friction, a blunt tip or no limit."""
 
     cosine: np.ndarray  # of the angle of friction [-], (n_points,)
     sine: np.ndarray
@@ -134,7 +135,7 @@ class _Members(NamedTuple):
 
 
 def cone_of(strength: Envelope, dimension: int) -> Cone:
-    """The members of all points."""
+    """Build the strength cones of all points from their envelope."""
     friction = strength.friction
     cosine = 1.0 / np.sqrt(1.0 + friction**2)
     tip = np.where(np.isfinite(strength.tension), strength.tension, 0.0)
@@ -156,7 +157,7 @@ def cone_of(strength: Envelope, dimension: int) -> Cone:
 
 
 def _by_two_sides(tips: _Tips, first: np.ndarray, most: np.ndarray) -> Cone:
-    """In the plane: a generator along either side of the cone, and one along a tip of some width."""
+    """Build the cones in the plane: a generator along either side, and one along a tip of some width."""
     every, blunt = np.arange(len(first)), tips.blunt
     first[blunt, 1] = -tips.width[blunt]
     members = [
@@ -170,7 +171,8 @@ def _by_two_sides(tips: _Tips, first: np.ndarray, most: np.ndarray) -> Cone:
 
 
 def _as_round_cones(tips: _Tips, first: np.ndarray, most: np.ndarray) -> Cone:
-    """In space: round cones of rough points, round tips (no N, |T| up to their cap), generators of smooth points."""
+    """Build the cones in space: round cones of rough points, round tips (no N, |T| up to their cap), generators of
+    smooth points."""
     rough, blunt, smooth = tips.rough, tips.blunt, np.flatnonzero(tips.sine == 0.0)
     round_ones = [
         _round(rough, tips.cosine[rough], tips.sine[rough], tips.crushing[rough]),
@@ -186,21 +188,22 @@ SPANNED: dict[int, Callable[[_Tips, np.ndarray, np.ndarray], Cone]] = {2: _by_tw
 
 
 def _without_limit(tips: _Tips, dimension: int) -> list[_Members]:
-    """Generators against tension, and to and fro along every tangent, of points that have no limit there."""
+    """Build generators against tension and along every tangent, of points that have no limit there."""
     along = np.eye(dimension)
     sides = [sign * tangent for tangent in along[1:] for sign in (1.0, -1.0)]
     return [_generators(tips.tied, -along[0]), *(_generators(tips.stuck, side) for side in sides)]
 
 
 def _generators(points, direction, cap=-1, share=1.0) -> _Members:
-    """One for each point; direction: of d numbers or arrays (n,)."""
+    """Build one generator for each point; direction: of d numbers or arrays (n,)."""
     n = len(points)
     shares = np.column_stack([np.broadcast_to(part, n) for part in direction])
     return _Members(points, shares, np.broadcast_to(cap, n), np.broadcast_to(share, n))
 
 
 def _round(points, cosine, sine, cap) -> _Members:
-    """One round cone for each point; what its leading amount presses counts in the cap, a tip of nothing as a whole."""
+    """Build one round cone for each point; its cap counts the pressing part of its leading amount, a tip without
+    any as a whole."""
     n = len(points)
     shares = np.zeros((n, 3, 3))
     shares[:, 0, 0], shares[:, 1, 1], shares[:, 2, 2] = cosine, sine, sine
@@ -219,7 +222,7 @@ def envelope_of(
     residual: bool = False,
     bonds: np.ndarray | None = None,
 ) -> Envelope:
-    """The largest forces of every point; residual: what is left of them after sliding and opening for long.
+    """Return the strength of every point; residual: the strength left after sliding and opening for long.
 
     bonds: points that cohesion and tension hold, (n_points,) bool; None: all. heads_frictionless: joints steeper than
     45° to the horizontal carry no shear force (thesis Table 5-3).
@@ -242,13 +245,13 @@ def envelope_of(
 
 
 def steep(joints: Joints) -> np.ndarray:
-    """Points of head joints, steeper than 45° to the horizontal, (n_points,) bool."""
+    """Find points of head joints, steeper than 45° to the horizontal, (n_points,) bool."""
     up = joints.points.shape[1] - 1  # the vertical part of the normals, which come first in the frames
     return np.abs(joints.frames[:, up]) < STEEP
 
 
 def friction_of(joints: Joints, law: Law, heads_frictionless: bool = False) -> np.ndarray:
-    """Friction coefficient of every point of joints with friction and nothing else [-], (n_points,).
+    """Return the friction coefficient of every point of joints with friction alone [-], (n_points,).
 
     heads_frictionless: joints steeper than 45° to the horizontal carry no friction (thesis Table 5-3).
     Raises UsageError where the law remembers anything, or has more than |T| ≤ μ N.

@@ -1,4 +1,4 @@
-"""The contact problem of one increment: elastic joints without tension, Coulomb friction without dilation.
+"""Contact problem of one load increment: elastic joints without tension, Coulomb friction without dilation.
 
 In units of a mean block weight W and of W over a median joint stiffness. For every contact point
 
@@ -39,12 +39,12 @@ FAR = 1e6  # units that the point of a tie which yields is open: it carries noth
 
 
 def pairs_of(n_points: int, settings: PathSettings) -> SlipPairs:
-    """In the plane."""
+    """Choose the friction model of contact points in the plane: pairs of reserves and slips."""
     return SlipPairs(n_points)
 
 
 def cones_of(n_points: int, settings: PathSettings) -> SlipCones:
-    """In space; those of many points are compiled: a third of the time, but code to be loaded."""
+    """Choose the friction model of points in space; for many points the compiled one takes a third of the time."""
     if n_points < settings.cones_compiled:
         return SlipCones(n_points)
     from dem_cli.core.limit.compiled_cones import CompiledCones
@@ -56,7 +56,7 @@ KINDS: dict[int, Callable[[int, PathSettings], Slips]] = {2: pairs_of, 3: cones_
 
 
 class State(NamedTuple):
-    """A solution, in the units of `Elastic`."""
+    """Solution of one increment, in the units of `Elastic`."""
 
     displacements: np.ndarray  # of the free degrees of freedom, (n_free,)
     load: float  # multiplier of the scaled live loads
@@ -68,7 +68,7 @@ class State(NamedTuple):
 
 
 class Direction(NamedTuple):
-    """A Newton direction; `positive` belongs to the vector (N, c, p, a)."""
+    """Newton direction; `positive` belongs to the vector (N, c, p, a)."""
 
     displacements: np.ndarray
     load: float
@@ -76,7 +76,7 @@ class Direction(NamedTuple):
     positive: np.ndarray
 
     def and_on(self, other: Direction, share: float) -> Direction:
-        """This direction, and on by a share of another one."""
+        """Add a share of another direction to this one."""
         return Direction(
             self.displacements + share * other.displacements,
             self.load + share * other.load,
@@ -86,7 +86,7 @@ class Direction(NamedTuple):
 
 
 class Elastic:
-    """Matrices of a structure whose joints are elastic, scaled; the points of its ties follow those of its joints.
+    """Scaled matrices of a structure with elastic joints; points of its ties follow those of its joints.
 
     gaps: of all joints where displacements are zero [m], (n_joint_points,), negative: overlaps; None: they just touch.
     """
@@ -162,7 +162,8 @@ class Elastic:
         return normal * self.weight, state.shear.reshape(-1, self.n_points)[:, :n].T * self.weight, gaps
 
     def put_ties(self, yielding: np.ndarray, plastic: np.ndarray) -> None:
-        """Ties that yield pull with their largest force, the others from their plastic elongations, (n_ties,) each."""
+        """Set the ties that yield, with their largest force, and the plastic elongations of the others, (n_ties,)
+        each."""
         if self.ties is not None:
             self.gaps = self.gaps.copy()
             self.gaps[self.n_joint_points :] = self.ties.gaps(plastic) + np.where(yielding, FAR, 0.0)
@@ -179,16 +180,16 @@ class Elastic:
         return len(self.kn)
 
     def draw_in(self, normal: np.ndarray) -> None:
-        """Friction acts by the centres of pressure of these normal forces from now on."""
+        """Set the centres of pressure of friction by these normal forces from now on."""
         if self.drawn is not None:
             self.drawn.follow(normal)
 
     def opened(self, displacements: np.ndarray) -> np.ndarray:
-        """How far joints open by displacements of the free degrees of freedom, (n_points,)."""
+        """Compute the opening of joints by displacements of the free degrees of freedom, (n_points,)."""
         return (self.motion @ displacements)[: self.n_points]
 
     def slid(self, displacements: np.ndarray) -> np.ndarray:
-        """How far they slide, as shear forces are numbered."""
+        """Compute the sliding of joints by displacements of the free degrees of freedom, numbered as shear forces."""
         return (self.motion @ displacements)[self.n_points :]
 
     def _points(self, structure: LimitStructure) -> PointRows:
@@ -204,13 +205,14 @@ class Elastic:
         return PointRows(rows, columns, ((0, 0), *self.slips.products_of_rows), len(self.columns), places)
 
     def elastic(self, share: np.ndarray | float = 1.0) -> FrontFactors:
-        """LU of the structure while nothing slips; share: of the stiffness of every point."""
+        """Factorise the matrix by LU while nothing slips; share: of the stiffness of every point."""
         return self.factorised(share * self.kn, self.slips.elastic(share * self.ks))
 
     def factorised(
         self, stiff_n: np.ndarray, tangential: list[np.ndarray], viscosity: np.ndarray | None = None
     ) -> FrontFactors:
-        """LU of Bnᵀ kN Bn + Btᵀ kT Bt − Btᵀ c Bn; tangential: kT and −c (limit.slips: SlipStiffness.stiffness).
+        """Factorise Bnᵀ kN Bn + Btᵀ kT Bt − Btᵀ c Bn by LU; tangential: kT and −c (limit.slips:
+        SlipStiffness.stiffness).
 
         viscosity: of the free degrees of freedom, on the diagonal. Factors of the call before are lost. Raises
         RuntimeError where it is singular.
@@ -219,7 +221,7 @@ class Elastic:
         return self.matrix.factorised([stiff_n, *tangential], viscosity)
 
     def imbalance(self, normal: np.ndarray, shear: np.ndarray, load: float) -> np.ndarray:
-        """Unbalanced forces, (n_free,)."""
+        """Compute the unbalanced forces, (n_free,)."""
         return self.pull @ np.concatenate([normal, shear]) + self.dead + load * self.live
 
     def residual(self, state: State, before: State) -> float:
@@ -251,7 +253,7 @@ class DrawnFriction:
         self.motion = [problem.motion[k * n : (k + 1) * n] for k in range(problem.dimension)]
 
     def follow(self, normal: np.ndarray) -> None:
-        """Motions of the problem, and the rows of its matrix, by these normal forces (n_points,)."""
+        """Update the motions of the problem, and the rows of its matrix, by these normal forces (n_points,)."""
         if normal is self.normal:
             return
         self.normal, problem = normal, self.problem

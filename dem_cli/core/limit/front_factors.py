@@ -11,7 +11,7 @@ from dem_cli.core.kernels.jit import always_inline, inline, kernel
 
 @kernel
 def assemble(values, parts, rows, factors, pairs, pushed):
-    """The matrix Σ f rowᵢᵀ rowⱼ of all points into its fronts.
+    """Assemble the matrix Σ f rowᵢᵀ rowⱼ of all points into its fronts.
 
     parts (n_points, 2, 2, 3): limit.fronts.parts_of; rows (n_points, d, 2, n_dof): motion of b against a;
     factors (n_pairs, n_points) of the pairs (i, j) of directions; pushed: room, (d, 2, n_dof).
@@ -51,7 +51,8 @@ def _add_part(values, part, left, right):
 
 @always_inline
 def _add_of_two(values, parts, rows, pushed, p, a, b):
-    """The same of two directions, without a loop over them: three times as fast."""
+    """Add the share of a contact point with two directions to its blocks, with the loop unrolled: three times as
+    fast."""
     first, down, across = parts[p, a, b, 0], parts[p, a, b, 1], parts[p, a, b, 2]
     for h in range(0, rows.shape[3], 3):
         x1, x2, x3 = pushed[0, b, h], pushed[0, b, h + 1], pushed[0, b, h + 2]
@@ -65,7 +66,7 @@ def _add_of_two(values, parts, rows, pushed, p, a, b):
 
 @kernel
 def assemble_joints(values, parts, starts, rows, factors, pairs, pushed, part):
-    """The same of joints in space with several points: those of one joint are summed first, and go in together.
+    """Assemble the matrix of joints in space: points of one joint are summed first and added together.
 
     parts (n_joints, 2, 2, 3); starts (n_joints + 1,): first point of each joint; rows (n_points, 3, 2 n_dof);
     pushed, part: room, (3, 2 n_dof) and (2 n_dof, 2 n_dof).
@@ -113,7 +114,7 @@ def _put_part(values, where, part, a, b):
 
 @kernel
 def add_to_diagonal(values, diagonal, share):
-    """A share of the mean of its diagonal to a matrix in fronts; diagonal: where that is."""
+    """Add a share of the mean diagonal to the diagonal of a matrix in fronts; diagonal: indices of its entries."""
     total = 0.0
     for i in range(diagonal.size):
         total += abs(values[diagonal[i]])
@@ -123,7 +124,7 @@ def add_to_diagonal(values, diagonal, share):
 
 @kernel
 def factorise(values, fronts, update):
-    """LU of a matrix in `limit.fronts.Fronts`, in its place; True where no pivot is nothing. update: room."""
+    """Factorise a matrix in `limit.fronts.Fronts` by LU, in place; True where no pivot is zero. update: room."""
     for front in range(len(fronts.start) - 1):
         own, left = _sizes(fronts, front)
         at = fronts.start[front]
@@ -150,7 +151,8 @@ def _sizes(fronts, front):
 
 @inline
 def _divide_panel(square, below, beside, own, left, k):
-    """Three columns of a front, and three rows of what they leave; whether no pivot is nothing."""
+    """Divide three columns of a front, and three rows beside them, by their pivots; returns whether no pivot is
+    zero."""
     end = k + 3
     for p in range(k, end):
         if square[p * own + p] == 0.0:
@@ -179,7 +181,7 @@ def _divide_panel(square, below, beside, own, left, k):
 
 @inline
 def _eliminate(square, below, beside, own, left, k):
-    """Three columns of a front from all others, one after the other in each number."""
+    """Eliminate three columns of a front from all others, one after the other in each number."""
     end, n = k + 3, own - k - 3
     a, b = square[k * own + end : end * own], beside[k * left : end * left]
     c, two, three = below[k * left : end * left], 2 * left, 2 * own
@@ -201,7 +203,7 @@ def _eliminate(square, below, beside, own, left, k):
 
 @inline
 def _multiply(below, beside, own, left, update):
-    """Strip below × strip beside, (left, left), three rows and three columns of the front at a time."""
+    """Multiply the strip below by the strip beside, (left, left), three rows and three columns at a time."""
     for i in range(0, left, 3):
         one, two = update[i * left : (i + 1) * left], update[(i + 1) * left : (i + 2) * left]
         three = update[(i + 2) * left : (i + 3) * left]
@@ -225,7 +227,7 @@ def _multiply(below, beside, own, left, update):
 
 @inline
 def _subtract_beside(values, fronts, run, left, update):
-    """What a front changes in the square of a later one and in its strip beside."""
+    """Subtract the update of a front from the square of a later front and from its strip beside."""
     runs, n_dof = fronts.runs, fronts.n_dof
     own, deep = _sizes(fronts, runs.into[run])
     at, begin, count = fronts.start[runs.into[run]], runs.ends[run, 0] * n_dof, runs.ends[run, 1] - runs.ends[run, 0]
@@ -247,7 +249,7 @@ def _subtract_beside(values, fronts, run, left, update):
 
 @inline
 def _end_in_line(where, j, border):
-    """Where places end that follow one another from j on, at a border at the latest."""
+    """Find the end of consecutive places from j on, at a border at the latest."""
     j += 1
     while j < len(where) and where[j] == where[j - 1] + 1 and j != border:
         j += 1
@@ -256,7 +258,7 @@ def _end_in_line(where, j, border):
 
 @inline
 def _subtract_below(values, fronts, run, left, update):
-    """The same in its strip below, which is transposed."""
+    """Subtract the update of a front from the strip below of a later front, which is stored transposed."""
     runs, n_dof = fronts.runs, fronts.n_dof
     own, deep = _sizes(fronts, runs.into[run])
     begin, count = runs.ends[run, 0] * n_dof, runs.ends[run, 1] - runs.ends[run, 0]
@@ -277,7 +279,7 @@ def _subtract_below(values, fronts, run, left, update):
 
 @kernel
 def solve_in_fronts(values, fronts, x, room):
-    """x becomes the solution with x on the right; room: (widest,)."""
+    """Solve with the LU factors in place: x is the right side, then the solution; room: (widest,)."""
     n_fronts = len(fronts.start) - 1
     for front in range(n_fronts):
         _forward(values, fronts, front, x, room)

@@ -1,4 +1,5 @@
-"""The associated load of large structures in the plane: a primal–dual interior point for the linear program, on fronts.
+"""Associated load of large plane structures: primal–dual interior point of the linear program with frontal
+factors.
 
     max λ       so that   Gᵀ g + dead + λ live = 0,   g ≥ 0              (limit/program.py)
     min −dead·u so that   live·u = 1,   s = G u ≥ 0,   and gᵢ sᵢ = τ → 0
@@ -29,7 +30,7 @@ PRODUCTS = ((0, 0), (1, 1), (0, 1), (1, 0))  # of normal and tangent
 
 
 class Feasible(NamedTuple):
-    """An iterate; all in units of mean weights and of the program's load."""
+    """Iterate of the interior point; all in units of mean weights and of the program's load."""
 
     x: np.ndarray  # velocities, (n_free,)
     load: float
@@ -38,45 +39,46 @@ class Feasible(NamedTuple):
 
     @property
     def mean(self) -> float:
-        """Mean product."""
+        """Mean product of slacks and amounts."""
         return float(product(self.slack, self.amounts)) / max(len(self.slack), 1)
 
     @property
     def inside(self) -> bool:
-        """Whether all that has to be positive is, and no number has run away."""
+        """Test whether all slacks and amounts are positive, and all numbers finite."""
         return bool((self.slack > 0.0).all() and (self.amounts > 0.0).all() and np.isfinite(self.mean + self.load))
 
     def moved(self, by: Feasible, primal: float, dual: float) -> Feasible:
-        """So far along a step; primal: velocities, dual: forces."""
+        """Move the iterate along a step; primal: share of velocities, dual: share of forces."""
         return Feasible(
             self.x + primal * by.x, self.load + dual * by.load,
             self.slack + primal * by.slack, self.amounts + dual * by.amounts,
         )  # fmt: skip
 
     def lengths(self, step: Feasible) -> tuple[float, float]:
-        """How far a step may go until something is no more positive, at most 1: velocities, forces."""
+        """Compute the longest steps, at most 1, that leave all values positive: velocities, forces."""
         return _to_zero(self.slack, step.slack), _to_zero(self.amounts, step.amounts)
 
 
 def _to_zero(values: np.ndarray, change: np.ndarray) -> float:
-    """Share of a change, at most 1, after which the first of positive values is nothing."""
+    """Share of a change, at most 1, after which the first of positive values becomes zero."""
     return min(1.0, float((-values / np.minimum(change, -1e-300)).min(initial=1.0)))
 
 
 def is_linear(program: Program) -> bool:
-    """Whether the program is one of generators alone: plane joints without caps and tips, no links."""
+    """Test whether the program has generators alone: plane joints without caps and tips, no links."""
     cone = program.cone
     bare = not (cone.n_round or len(cone.most) or cone.first.any() or program.structure.links)
     return bare and cone.dimension == 2 and len(cone.points) > 0
 
 
 def solved_on_fronts(program: Program, loaded: bool) -> ProgramSolution:
-    """As limit.program.largest_load (loaded) or `standing`; UNKNOWN, which proves nothing, where it leads nowhere."""
+    """Solve the program like limit.program.largest_load (loaded) or `standing`; UNKNOWN, which proves nothing, on
+    failure."""
     return FrontalProgram(program, program.structure.live * program.load if loaded else None).solution()
 
 
 class FrontalProgram:
-    """The linear program of a structure in scaled numbers, and its iteration; live: loads, None: dead loads alone."""
+    """Linear program of a structure in scaled numbers, and its iteration; live: loads, None: dead loads alone."""
 
     def __init__(self, program: Program, live: np.ndarray | None) -> None:
         structure, cone = program.structure, program.cone
@@ -96,7 +98,7 @@ class FrontalProgram:
         self.shares = (normal * normal, tangent * tangent, normal * tangent, normal * tangent)
 
     def solution(self) -> ProgramSolution:
-        """Where the iteration comes to."""
+        """Iterate to the solution and return it with its status."""
         kind, count = UNKNOWN, 0
         with np.errstate(all="ignore"):  # what runs away is given up
             at = self._start()
@@ -116,7 +118,8 @@ class FrontalProgram:
         return ProgramSolution(kind, amounts, load, velocities, count, "interior point on fronts")
 
     def _start(self) -> Feasible:
-        """The least forces in equilibrium and the mechanism of least motions, moved off the boundary (Mehrotra)."""
+        """Start from least forces in equilibrium and the mechanism of least motions, moved off the boundary
+        (Mehrotra)."""
         ones = np.ones(len(self.program.cone.points))
         if not self._factorise(Feasible(self.right, 0.0, ones, ones)):
             return Feasible(0.0 * self.right, 0.0, ones, np.full(len(ones), np.nan))
@@ -136,7 +139,7 @@ class FrontalProgram:
         self.off_power = float(1.0 - product(self.live, at.x)) if self.loaded else 0.0
 
     def _done(self, at: Feasible) -> bool:
-        """Whether forces balance and both bounds are close."""
+        """Test whether forces balance and both bounds are close."""
         settings = self.settings
         if not np.abs(self.unbalanced).max() < settings.balanced * settings.residual:
             return False
@@ -174,7 +177,7 @@ class FrontalProgram:
         return x + load * self.by_live, load
 
     def _next(self, at: Feasible) -> Feasible:
-        """Predictor and correctors."""
+        """Compute the next iterate by a predictor and correctors."""
         settings, mean, products = self.settings, at.mean, at.slack * at.amounts
         straight = self._towards(at, -products)
         left = at.moved(straight, *at.lengths(straight)).mean

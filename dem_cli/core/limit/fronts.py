@@ -49,7 +49,7 @@ class Fronts(NamedTuple):
 
 @dataclass
 class _Front:
-    """A front as it grows; by its last block."""
+    """Dense front during elimination; sorted by its last block."""
 
     blocks: list[int]
     rows: np.ndarray  # blocks left behind
@@ -58,7 +58,7 @@ class _Front:
 
 
 def fronts_of(pairs: np.ndarray, n_blocks: int, n_dof: int, places: np.ndarray | None = None) -> Fronts:
-    """The fronts of free blocks that touch in pairs, (n_pairs, 2) numbers of free blocks, each pair once.
+    """Build the fronts of free blocks that touch in pairs, (n_pairs, 2) numbers of free blocks, each pair once.
 
     places: of the blocks, for the order of many, (n_blocks, d).
     """
@@ -82,7 +82,7 @@ def fronts_of(pairs: np.ndarray, n_blocks: int, n_dof: int, places: np.ndarray |
 
 
 def _minimum_degree(pairs: np.ndarray, n_blocks: int) -> np.ndarray:
-    """Blocks in an order that brings little fill."""
+    """Order the blocks by minimum degree, which brings little fill."""
     from scipy.sparse import csc_matrix
 
     from dem_cli.core.limit.sparse_factors import factors_of
@@ -96,7 +96,7 @@ def _minimum_degree(pairs: np.ndarray, n_blocks: int) -> np.ndarray:
 
 
 def _dissected(pairs: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Blocks in the order of nested dissection: halves by place, behind both the blocks of one that touch the other."""
+    """Order the blocks by nested dissection: halves by place, behind both the blocks of one that touch the other."""
     n_blocks = len(places)
     both = np.concatenate([pairs, pairs[:, ::-1]])
     both = both[np.argsort(both[:, 0], kind="stable")]
@@ -116,7 +116,7 @@ def _dissected(pairs: np.ndarray, places: np.ndarray) -> np.ndarray:
 def _cut(
     part: np.ndarray, places: np.ndarray, touching: np.ndarray, first: np.ndarray, half: np.ndarray
 ) -> tuple[list[np.ndarray], np.ndarray]:
-    """The sides of a part, and the fewest blocks that keep them apart, cut across the longest or the next direction.
+    """Separate a part into two sides by the fewest blocks, cut across its longest or next direction.
 
     touching, first: blocks that touch each block; half: room, zeros.
     """
@@ -166,7 +166,7 @@ def _join(front: _Front, fronts: dict[int, _Front], before: int) -> None:
 
 
 def _in_order(fronts: dict[int, _Front]) -> list[_Front]:
-    """Each front after those that go into it, near to them."""
+    """Sort fronts so that each comes after those that go into it, near to them."""
     found: list[_Front] = []
     waiting = [(block, False) for block, front in reversed(fronts.items()) if not len(front.rows)]
     while waiting:
@@ -180,7 +180,7 @@ def _in_order(fronts: dict[int, _Front]) -> list[_Front]:
 
 
 def _runs(first: np.ndarray, rows: list[np.ndarray]) -> Runs:
-    """Which rows of each front go where."""
+    """Find the runs of rows that each front passes to later fronts."""
     owner = np.repeat(np.arange(len(rows)), np.diff(first))
     runs, into, ends, places = [0], [], [], [np.zeros(0, np.int64)]
     for left in rows:
@@ -202,8 +202,8 @@ def _runs(first: np.ndarray, rows: list[np.ndarray]) -> Runs:
 
 
 def parts_of(fronts: Fronts, pairs: np.ndarray) -> np.ndarray:
-    """Where parts of the matrix are, −1 of fixed blocks (negative numbers): first number, steps to the next
-    row and to the next column, (n_pairs, 3).
+    """Find the places of matrix parts in the fronts: first number, steps to the next row and to the next column,
+    (n_pairs, 3). Parts of fixed blocks (negative numbers) have −1.
 
     pairs: numbers of free blocks, row and column of the part, (n_pairs, 2); blocks touch or are the same.
     """

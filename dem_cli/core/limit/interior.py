@@ -1,4 +1,4 @@
-"""A primal–dual interior point for one increment (limit.elastic): predictor–corrector, and a way round folds.
+"""Primal–dual interior point of one increment (limit.elastic): predictor–corrector, and a way round folds.
 
 All products N p and c ∘ a (limit.slips) equal τ on the central path, which ends in a solution as τ goes to zero.
 Each iteration factorises once: a predictor towards zero says how far τ may fall (Mehrotra, SIAM J. Optim. 2, 1992, 575)
@@ -25,7 +25,7 @@ from dem_cli.interrupts import look
 
 @dataclass
 class Iterate:
-    """Where the iteration is."""
+    """Iterate of the interior point: displacements, load, shear forces and positive variables."""
 
     u: np.ndarray
     load: float
@@ -33,13 +33,13 @@ class Iterate:
     x: np.ndarray  # N, c, p, a as limit.slips keeps them, positive or inside their cones, (2·(1 + d)·n_points,)
 
     def copy(self) -> Iterate:
-        """The same, to be kept."""
+        """Copy the iterate, so that later steps leave it unchanged."""
         return Iterate(self.u.copy(), self.load, self.shear.copy(), self.x.copy())
 
 
 @dataclass
 class Course:
-    """How an iteration goes: whether it is stuck, and its best iterate in equilibrium on the central path."""
+    """Progress of an iteration: whether it is stuck, and its best iterate in equilibrium on the central path."""
 
     settings: InteriorPointSettings
     means: list[float] = field(default_factory=list)  # products, iteration by iteration
@@ -47,12 +47,12 @@ class Course:
     kept: tuple[float, Iterate] | None = None  # mean product, and where it was
 
     def keep(self, mean: float, at: Iterate) -> None:
-        """The iterate of the smallest products so far."""
+        """Store the iterate of the smallest products so far."""
         if self.kept is None or mean < self.settings.reversal * self.kept[0]:
             self.kept = (mean, at.copy())
 
     def goes_on(self, feasible: bool) -> bool:
-        """Whether steps still lead anywhere: products fall, or equations are not yet satisfied."""
+        """Test whether steps still make progress: products fall, or equations are not yet satisfied."""
         settings, means = self.settings, self.means
         if len(means) >= settings.slow or self.short >= settings.short_steps:
             return False
@@ -61,7 +61,7 @@ class Course:
 
 
 class Increment:
-    """One increment from a state to a displacement of the live load, or to a load.
+    """Load increment from a state to a displacement of the live load, or to a load.
 
     end        mean product at which it ends, over the square of the lightest block (None: as set)
     viscosity  force of the free degrees of freedom per displacement of this increment, against it, (n_free,)
@@ -87,7 +87,8 @@ class Increment:
         self.last: Iterate | None = None  # of what was solved
 
     def start(self, tau: float, ahead: float) -> Iterate:
-        """The last state moved off the boundary to products of τ; slips go on `ahead` times as far as before."""
+        """Build the first iterate: the last state moved off the boundary to products of τ; slips go on `ahead`
+        times as far."""
         problem, before, slips = self.problem, self.before, self.problem.slips
         mu = problem.friction
         opening = self.gaps + before.normal / problem.kn
@@ -106,7 +107,7 @@ class Increment:
         stop: Callable[[], bool] = lambda: False,
         rough: float = 0.0,
     ) -> State | None:
-        """The state after the increment, or None where the iteration got stuck.
+        """Solve for the state after the increment; None where the iteration got stuck.
 
         tau    of the first products
         ahead  how far slips go on from the last increment, as a share of that
@@ -123,7 +124,7 @@ class Increment:
         return None
 
     def _pose(self) -> None:
-        """The problem at the begin of this increment: friction by its forces, ties that yield, gaps."""
+        """Set up the problem at the begin of this increment: friction by its forces, ties that yield, gaps."""
         problem, before = self.problem, self.before
         problem.draw_in(before.normal)
         if self.yielding is not None:
@@ -131,7 +132,7 @@ class Increment:
         self.gaps = problem.opened(before.displacements) + problem.gaps  # where joints have no stiffness
 
     def _yields_so(self, found: State) -> bool:
-        """Whether those ties yield that were taken to; else those that would are taken next."""
+        """Test whether exactly those ties yield that were assumed to; otherwise the others are assumed next."""
         ties, before = self.problem.ties, self.before
         if ties is None:
             return True
@@ -140,7 +141,7 @@ class Increment:
         return bool((yielding == taken).all())
 
     def polished(self) -> State | None:
-        """What was solved with smaller products, down to the end that is set; None where that fails."""
+        """Solve the increment again to smaller products, down to the end that is set; None where that fails."""
         if self.last is None:
             return None
         self.end = self.settings.end * self.problem.lightest
@@ -151,7 +152,8 @@ class Increment:
     def _solved(
         self, at: Iterate, tau: float | None, folds: int, stop: Callable[[], bool], rough: float
     ) -> State | None:
-        """tau: of the first step, which goes straight to the equations; None: they are satisfied."""
+        """Iterate to the solution; tau: of the first step, which goes straight to the equations; None: they are
+        satisfied."""
         settings, course, length = self.settings, Course(self.settings), 1.0
         while not stop():
             mean, infeasible = float(self.problem.slips.products(at.x).mean()), self._residuals(at)
@@ -181,14 +183,15 @@ class Increment:
         return self._state(at)._replace(left=mean)
 
     def _towards_end(self, at: Iterate, mean: float, length: float) -> Direction:
-        """The next step; length: of the last one."""
+        """Compute the next step with the centring that the length of the last one asks for."""
         for least, share in self.settings.centring:
             if length > least or least == 0.0:
                 return self._direction(max(share * mean, self.end))
         return self._predicted(at, mean)
 
     def _predicted(self, at: Iterate, mean: float) -> Direction:
-        """Mehrotra's predictor and corrector, and Gondzio's correctors towards the central path."""
+        """Compute the next step by Mehrotra's predictor and corrector, and Gondzio's correctors towards the
+        central path."""
         settings, slips = self.settings, self.problem.slips
         straight = self._direction(0.0)
         length = self._to_boundary(at, straight, 1.0)
@@ -223,7 +226,8 @@ class Increment:
     # -- the central path by its arc length -----------------------------------------------------------
 
     def _arc(self, tau: float, at: Iterate, fold: float, stop: Callable[[], bool]) -> Iterate | None:
-        """From a kept iterate round the fold until τ is well below it; None where that fails."""
+        """Follow the central path round its fold from a kept iterate until τ is well below it; None where that
+        fails."""
         settings, slips, last, on_path, at = self.settings, self.problem.slips, None, False, at.copy()
         for _ in range(settings.on_arc):
             if tau < settings.passed * fold:
@@ -260,7 +264,7 @@ class Increment:
     # -- Newton ---------------------------------------------------------------------------------------
 
     def _residuals(self, at: Iterate) -> float:
-        """Residuals of the linear equations into self; returns the largest."""
+        """Compute the residuals of the linear equations into self; returns the largest."""
         problem, before, slips = self.problem, self.before, self.problem.slips
         normal, opening = slips.normals(at.x)
         self.unbalanced = problem.imbalance(normal, at.shear, at.load)
@@ -296,7 +300,7 @@ class Increment:
         return bool(np.isfinite(self.by_live).all())
 
     def _direction(self, tau: float | np.ndarray) -> Direction:
-        """Towards the linear equations and products of τ, one for all or as Slips.products has them."""
+        """Compute Newton's direction to the equations and products of τ, one for all or as Slips.products has them."""
         n = self.problem.n_points
         products = np.broadcast_to(tau, 3 * n)
         push = (products[:n] - self.normal * self.opening - self.normal * self.off_gap) / self.soft_n
@@ -305,13 +309,13 @@ class Increment:
                            self.off_target)  # fmt: skip
 
     def _tangent(self) -> Direction:
-        """Change of the central path by τ."""
+        """Compute the change of the central path by τ."""
         none = np.zeros_like
         return self._solve(1.0 / self.soft_n, self.joints.along(), none(self.unbalanced), none(self.off_gap),
                            none(self.off_slide), none(self.off_reserve), 0.0)  # fmt: skip
 
     def _solve(self, push, forced, unbalanced, off_gap, off_slide, off_reserve, off_target) -> Direction:
-        """Newton's equations, condensed on the free degrees of freedom and bordered by the live load.
+        """Solve Newton's equations, condensed on the free degrees of freedom and bordered by the live load.
 
         push, forced: changes of the normal forces and of the slips while nothing else changes.
         """
@@ -333,8 +337,8 @@ class Increment:
         return Direction(u, float(load), d_shear, np.concatenate([d_normal, d_reserve, d_opening, d_slip]))
 
     def _to_boundary(self, at: Iterate, step: Direction, share: float | None = None) -> float:
-        """Length of the step that goes a share (None: as set) of the way to where something is no more positive, at
-        most one.
+        """Compute the step, at most 1, that goes a share (None: as set) of the way to where a variable becomes
+        zero.
         """
         slips = self.problem.slips
         steepest = slips.fastest(at.x, step.positive)[0]

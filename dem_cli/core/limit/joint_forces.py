@@ -88,7 +88,8 @@ class JointForces:
         )
 
     def bounds(self, low: float, high: float, shear: np.ndarray | None = None) -> np.ndarray:
-        """Of all unknowns, (n, 2), at multipliers between two; shear: largest of each joint, (n_joints,)."""
+        """Build the bounds of all unknowns, (n, 2), at multipliers between two; shear: largest of each joint,
+        (n_joints,)."""
         reach = np.full(self.n_joints, np.inf) if shear is None else shear
         below = np.concatenate([-self.strength.tension, -reach, [low / self.load]])
         above = np.concatenate([self.strength.compression, reach, [high / self.load]])

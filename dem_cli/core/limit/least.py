@@ -1,4 +1,5 @@
-"""Search of the least load of joints that do not dilate: all collapse states of small structures, else a local least.
+"""Search for the least load of joints that do not dilate: all collapse states of small structures, else a local
+minimum.
 
 What is proved is said with the load: `all`, the least of all collapse states, proved by branch and bound; `local`, the
 least of those that differ from it in a few joints; `some`, a collapse state, and nothing about others.
@@ -23,7 +24,7 @@ ALL, LOCAL, SOME, NONE = "all", "local", "some", "none"
 
 
 class LeastLoad(NamedTuple):
-    """The least load that was found, and what is known of lower ones."""
+    """Least load found among collapse states, and what is proved about lower ones."""
 
     least_of: str  # ALL, LOCAL, SOME, or NONE: no collapse state was found
     multiplier: float | None  # of the live loads, as users know it
@@ -37,7 +38,7 @@ class LeastLoad(NamedTuple):
     seconds: float
 
     def summary(self) -> dict[str, Any]:
-        """What summary.json says of it."""
+        """Return the entries of summary.json about the least load."""
         return {
             "least": self.multiplier,
             "least_of": self.least_of,
@@ -58,7 +59,7 @@ def least_load(
     path: Path | None = None,
     settings: LeastSettings = DEFAULT_LIMIT.least,
 ) -> LeastLoad:
-    """The least load of the collapse states, up to the associated one (infinite: none is known).
+    """Search for the least load of the collapse states, up to the associated one (infinite: none is known).
 
     path: of joints that do not dilate, whose end a local search starts from.
     """
@@ -81,7 +82,7 @@ def least_load(
 
 
 def _of_all(states: CollapseStates, upper: float) -> StateSearch:
-    """The least of all states with slow joints; then whether faster ones make any lower, if that comes to an end."""
+    """Find the least of all states with slow joints; then test whether faster ones are lower, if that search ends."""
     settings = states.settings
     slow, *faster = (rate * states.alone for rate in settings.rates)
     states.fastest = slow
@@ -101,7 +102,7 @@ def _of_all(states: CollapseStates, upper: float) -> StateSearch:
 
 
 def _locally(states: CollapseStates, best: CollapseState) -> tuple[CollapseState, int | None, int]:
-    """From a state to lower ones, while there are any that differ in a few choices.
+    """Search from a collapse state for lower ones, while there are any that differ in a few choices.
 
     Returns the last, in how many choices it was proved against others (None: in none), and the nodes of all searches.
     """
@@ -127,7 +128,7 @@ def _believed(state: CollapseState | None, settings: LeastSettings) -> CollapseS
 
 
 def _end_of(path: Path, states: CollapseStates) -> CollapseState | None:
-    """The state in which the path ends, or one close to it; None: there is none."""
+    """Return the collapse state at the end of the path, or one close to it; None where there is none."""
     if path.normal is None or path.shear is None or path.mechanism is None:
         return None
     statics, moved = states.statics, path.mechanism.ravel()[states.structure.free]

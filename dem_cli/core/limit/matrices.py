@@ -43,11 +43,13 @@ class Links(NamedTuple):
 
     @property
     def elsewhere(self) -> bool:
-        """Whether the static problem of elastic joints (limit/elastic.py) does not know them."""
+        """Test whether there are links that the static problem of elastic joints (limit/elastic.py) cannot
+        represent."""
         return bool(self) and self.pulling is None
 
     def as_points(self, dimension: int) -> tuple[csr_matrix, Envelope]:
-        """They as contact points without friction that hold tension: rows as of `compatibility`, and their strength."""
+        """Represent links as contact points without friction that hold tension: rows as of `compatibility`, and
+        their strength."""
         n = len(self.limits)
         rows = np.arange(n) * dimension
         place = csr_matrix((np.ones(n), (rows, np.arange(n))), (n * dimension, n))
@@ -56,7 +58,7 @@ class Links(NamedTuple):
 
 
 class LimitStructure(NamedTuple):
-    """A structure as limit analysis sees it: matrices, loads, and what makes their numbers comparable."""
+    """Structure for limit analysis: compatibility matrix, loads, and the scales that make their numbers comparable."""
 
     model: Model
     joints: Joints
@@ -80,7 +82,7 @@ class LimitStructure(NamedTuple):
         return whole.reshape(-1, self.n_dof)
 
     def imbalance(self, reactions: np.ndarray, multiplier: float, axial: np.ndarray | None = None) -> np.ndarray:
-        """What is missing to equilibrium, over the own weight of the block (times its radius), (n_free,).
+        """Compute the unbalanced forces, over the own weight of the block (times its radius), (n_free,).
 
         reactions: N and T at every point [N], (n_points·d,); axial: forces of the links [N], (n_links,).
         """
@@ -110,7 +112,7 @@ def structure_of(model: Model, joints: Joints, bonds: np.ndarray | None = None) 
 
 
 def links_of(model: Model) -> Links:
-    """The links of a model as they were drawn."""
+    """Collect the links of a model as they were drawn, with the bounds of their axial forces."""
     bounded = [link.bounded() for link in model.links]
     springs = joined((held for held, _ in bounded), model.dead_loads.shape[1])
     limits = np.concatenate([np.zeros((0, 2)), *(limits for _, limits in bounded)])

@@ -31,7 +31,7 @@ class PointRows(NamedTuple):
 
 
 class NewtonMatrix:
-    """The matrix of one structure; degrees of freedom are those of `order`, one after the other.
+    """Newton matrix of one structure; degrees of freedom are those of `order`, one after the other.
 
     No rows are exchanged.
     """
@@ -78,7 +78,7 @@ class NewtonMatrix:
         else:
             values[self.diagonal] += more
         if not factorise(values, fronts, self.room):
-            raise RuntimeError("a pivot is nothing: the matrix is singular")
+            raise RuntimeError("a pivot is zero: the matrix is singular")
         return FrontFactors(self)
 
     def _assemble(self, factors: np.ndarray) -> None:
@@ -99,7 +99,7 @@ class FrontFactors(NamedTuple):
     matrix: NewtonMatrix
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        """The solution, (n_columns,)."""
+        """Solve for one right side; returns the solution, (n_columns,)."""
         from dem_cli.core.limit.front_factors import solve_in_fronts
 
         found = right.copy()

@@ -1,4 +1,4 @@
-"""The failure load of joints that do not dilate: a path of elastic, frictional joints from gravity to collapse.
+"""Failure load of joints that do not dilate: a path of elastic, frictional joints from gravity to collapse.
 
 The displacement of the live load grows until its multiplier grows no more. Every point of the path is a
 state in equilibrium under the real, non-associated law (limit.elastic), so that the plateau is a true
@@ -32,7 +32,7 @@ UNFINISHED = "not converged: the load still grows with displacement"
 
 @dataclass
 class Path:
-    """The way to collapse, and its state at the highest load."""
+    """Path of the load to collapse, and the state at its highest load."""
 
     status: str  # OK, FALLS, UNFINISHED
     load: float | None = None  # multiplier of the live loads, as users know it
@@ -72,15 +72,16 @@ class Path:
 
     @property
     def finished(self) -> bool:
-        """Whether the load stopped growing."""
+        """Test whether the load stopped growing."""
         return self.status == OK
 
     def flat(self, share: float) -> bool:
-        """Whether the highest load is a plateau, reached beyond that share of the displacement, and not a peak."""
+        """Test whether the highest load is a plateau, reached beyond that share of the displacement, rather than a
+        peak."""
         return self.finished and self.reached[self.highest] > share * self.reached[-1]
 
     def summary(self) -> dict[str, Any]:
-        """What summary.json says of it."""
+        """Return the entries of summary.json about the path."""
         return {
             "load": self.load,
             "status": self.status,
@@ -102,12 +103,12 @@ def trace(
     progress: Callable[[float, float], None] = lambda load, reached: None,
     settings: LimitSettings = DEFAULT_LIMIT,
 ) -> Path:
-    """From gravity to the plateau of the load.
+    """Trace the load path from gravity to the plateau of the load.
 
     friction  coefficient of every point [-], (n_points,)
     plateau   relative growth of the load, over that of the displacement, that counts as none (None: as the settings)
     effort    factorisations × points after which what was reached is returned (None: as the settings)
-    progress  told the load and the displacement of every increment
+    progress  called with the load and the displacement of every increment
 
     Raises UsageError where links are more than ties that only pull.
     """
@@ -138,7 +139,7 @@ def trace(
 
 
 class Stride(NamedTuple):
-    """One increment that led to a state, and the state before it."""
+    """Increment that led to a state, and the state before it."""
 
     increment: Increment
     before: State
@@ -149,7 +150,7 @@ class Stride(NamedTuple):
 
 
 class Walk:
-    """The way from gravity, increment by increment: longer ones where they are easy, shorter ones where they fail."""
+    """Incremental path from gravity: longer increments where they succeed, shorter ones where they fail."""
 
     def __init__(self, problem: Elastic, standing: State, stop: Callable[[], bool]) -> None:
         self.problem, self.settings, self.stop = problem, problem.settings.path, stop
@@ -160,7 +161,7 @@ class Walk:
         self.last: Stride | None = None
 
     def go_on(self) -> bool:
-        """Whether an increment of some size led to another state: one under the law, or a rough one (State.left)."""
+        """Try increments of several sizes; True where one led to another state, exact or rough (State.left)."""
         settings = self.settings
         longest = (settings.growth - 1.0) * self.reached if self.reached else settings.first
         found, resort = None, None  # a rough state is the last resort, where shorter increments lead nowhere either
@@ -193,7 +194,7 @@ class Walk:
         return Stride(increment, state, found, length, share, self.last.increment if self.last is not None else None)
 
     def far_ahead(self) -> Iterator[tuple[float, float]]:
-        """Displacements far ahead and the loads there, by long increments as far as these lead; the walk stays here."""
+        """Look ahead by long increments, as far as these lead: displacements and loads there; the walk stays here."""
         ahead, leaping = copy(self), True
         ahead.share = 1.0
         most = int((1.0 + self.settings.effort_ahead) * self.problem.factorisations)
@@ -227,7 +228,7 @@ def _follow(
     stop: Callable[[], bool],
     progress: Callable[[float, float], None],
 ) -> None:
-    """Increments from gravity until the load grows no more (status OK), or one fails in every size."""
+    """Follow increments from gravity until the load grows no more (status OK), or one fails in every size."""
     settings, walk = problem.settings.path, Walk(problem, state, stop)
     calm_since, slope = np.inf, np.inf  # displacement from which on the load grows no more
     best: tuple[Stride, float] | None = None  # that of the highest load, and where it led
@@ -263,7 +264,8 @@ def _higher_ahead(path: Path, walk: Walk, scale: float, plateau: float) -> float
 
 
 def _slope(path: Path, settings: PathSettings, load: float, reached: float) -> tuple[float, float]:
-    """Relative growth of the load over that of the displacement, and since where: over an increment of full length."""
+    """Compute the relative growth of the load over that of the displacement, and since where: over a full
+    increment."""
     behind = [k for k, before in enumerate(path.reached) if 0.0 < settings.span * before <= reached]
     if not behind:
         return np.inf, np.inf
@@ -273,7 +275,7 @@ def _slope(path: Path, settings: PathSettings, load: float, reached: float) -> t
 
 
 def is_plateau(settings: PathSettings, reached: float, since: float, slope: float) -> bool:
-    """Whether a load that grows no more since a displacement has come to its plateau.
+    """Test whether a load that grows no more since a displacement has come to its plateau.
 
     slope: of the last increment, in those that count as none. Early on, while joints still open and close one after
     the other, a load may rest and rise again: there it has to last. Later the first plateau counts.
@@ -284,7 +286,10 @@ def is_plateau(settings: PathSettings, reached: float, since: float, slope: floa
 
 
 def at_rest(problem: Elastic) -> State:
-    """Blocks where they are drawn, all joints pressed by half a weight: from there dead loads come at once."""
+    """Return the state before gravity: blocks where they are drawn, all joints pressed by half a weight.
+
+    From there dead loads come at once.
+    """
     n, shear = problem.n_points, np.zeros(len(problem.ks_t))
     still, slip = np.zeros(len(problem.columns)), np.zeros(n + len(shear))
     return State(still, 0.0, np.full(n, 0.5), shear, slip, plastic=np.zeros(problem.n_ties))
@@ -298,7 +303,7 @@ def _advance(
     folds: int = 0,
     easier: float = 1.0,
 ) -> State | None:
-    """The state at a displacement of the live load; without one, under dead loads alone."""
+    """Solve for the state at a displacement of the live load; without one, under dead loads alone."""
     tau = easier * first_products(problem, state, target)
     return Increment(problem, state, target).solve(tau, 0.0, folds, stop)
 
@@ -318,7 +323,7 @@ def compliance(problem: Elastic, state: State) -> float:
 
 
 def _polish(path: Path, structure: LimitStructure, problem: Elastic, stride: Stride, reached: float) -> None:
-    """The increment of the highest load, solved to the end; and the one before, for the mechanism between them."""
+    """Solve the increment of the highest load to the end, and the one before, for the mechanism between them."""
     found = stride.increment.polished()
     if found is None or problem.residual(found, stride.before) > path.residual:
         return
@@ -341,7 +346,8 @@ def _keep(
     reached: float,
     since: State | None = None,
 ) -> bool:
-    """One more increment; its state in SI units, where the load is the highest so far: whether it is.
+    """Append an increment to the path, and store its state in SI units where the load is the highest; returns
+    whether it is.
 
     since: the state before, closer to the law, that the mechanism is taken from (None: before)
     """

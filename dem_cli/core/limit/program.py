@@ -38,7 +38,7 @@ KINDS = {
 
 
 class Program(NamedTuple):
-    """The program in newtons and metres, and the units in which it is solved."""
+    """Cone program in newtons and metres, and the units in which it is solved."""
 
     structure: LimitStructure
     cone: Cone
@@ -56,7 +56,7 @@ class Program(NamedTuple):
 
 
 class ProgramSolution(NamedTuple):
-    """What the solver came up with; where it says that something is impossible, its proof."""
+    """Solution of the cone program; where the solver says that something is impossible, its proof."""
 
     kind: str  # ANSWERED; IMPOSSIBLE: `velocities` are the proof; UNBOUNDED: `amounts` and `multiplier`; UNKNOWN
     amounts: np.ndarray  # of the members of the cone [N], (n_amounts,)
@@ -69,7 +69,7 @@ class ProgramSolution(NamedTuple):
 def program_of(
     structure: LimitStructure, strength: Envelope, settings: AssociatedSettings = DEFAULT_LIMIT.associated
 ) -> Program:
-    """The program of a structure with live loads; its links are points behind those of `strength`."""
+    """Build the cone program of a structure with live loads; its links are points behind those of `strength`."""
     d, compatibility = structure.model.dimension, structure.compatibility
     if structure.links:
         more, bounds = structure.links.as_points(d)
@@ -93,17 +93,17 @@ def units(structure: LimitStructure) -> tuple[float, float]:
 
 
 def largest_load(program: Program, options: dict[str, Any]) -> ProgramSolution:
-    """Forces under the largest multiplier, and the mechanism that ends it."""
+    """Solve for the forces under the largest multiplier, and the mechanism that ends it."""
     return _solve(program, options, program.structure.live[None] * program.load)
 
 
 def standing(program: Program, options: dict[str, Any]) -> ProgramSolution:
-    """Some forces that carry the dead loads alone."""
+    """Find forces that carry the dead loads alone."""
     return _solve(program, options, np.zeros((0, len(program.structure.free))))
 
 
 def factorised_by(program: Program) -> str:
-    """Which factorisation Clarabel takes: by columns, the same on every processor, or the one for large programs.
+    """Choose Clarabel's factorisation: by columns, equal on every processor, or the one for large programs.
 
     The other, faer, multiplies in the order that suits a processor.
     """
@@ -111,7 +111,8 @@ def factorised_by(program: Program) -> str:
 
 
 def _solve(program: Program, options: dict[str, Any], live: np.ndarray) -> ProgramSolution:
-    """The dual in Clarabel's form, min q·x, A x + s = b: x velocities, s = power of live loads, then s = G x ∈ K.
+    """Solve the dual in Clarabel's form, min q·x, A x + s = b: x velocities, s = power of live loads, then s = G x
+    ∈ K.
 
     The multipliers of these rows are −λ and the amounts. Behind the velocities are the rates of the caps, behind these
     rows that they are not negative.
@@ -149,7 +150,7 @@ def _solve(program: Program, options: dict[str, Any], live: np.ndarray) -> Progr
 
 
 def _with_caps(a: csc_matrix, cone: Cone, before: int) -> csc_matrix:
-    """The rows of velocities, of which the amounts come after `before` others, with the rates of the caps."""
+    """Add the rates of the caps to the rows of velocities, of which the amounts come after `before` others."""
     n_caps, capped = len(cone.most), np.flatnonzero(cone.cap >= 0)
     rows = before + cone.leading[capped]
     rates = csr_matrix((-cone.share[capped], (rows, cone.cap[capped])), (a.shape[0], n_caps))

@@ -8,7 +8,7 @@ flow is that of the real joint and associated, and which takes no more than the 
 Let forces of the reduced domain balance the dead loads and the live ones times `low`, and others the live ones times
 `reached`. Then virtual work of both in the mechanism of any collapse at a multiplier between them would take more than
 the loads give: there is no collapse in between, whatever the history. With N_min = −ft A, all that the strength itself
-says, this is the thesis's domain, |T| ≤ c A of joints without tension: nothing where cohesion is nothing. Statics says
+says, this is the thesis's domain, |T| ≤ c A of joints without tension: zero where cohesion is zero. Statics says
 more: N_min is found by one linear program for each joint, over all forces that the real joints carry at loads of the
 interval, and the interval is moved on from what was reached.
 
@@ -33,7 +33,7 @@ OK, NONE = "ok", "no load proved: the reduced domain does not carry the dead loa
 
 
 class LowerBound(NamedTuple):
-    """A load below which nothing collapses."""
+    """Lower bound of the failure load: below it nothing collapses."""
 
     status: str  # OK or NONE
     multiplier: float | None  # of the live loads, as users know it; None where none was proved
@@ -44,7 +44,7 @@ class LowerBound(NamedTuple):
     seconds: float
 
     def summary(self) -> dict[str, Any]:
-        """What summary.json says of it."""
+        """Return the entries of summary.json about the lower bound."""
         return {
             "lower_bound": self.multiplier,
             "lower_bound_status": self.status,
@@ -61,7 +61,7 @@ def lower_bound(
     associated: float,
     settings: ReducedSettings = DEFAULT_LIMIT.reduced,
 ) -> LowerBound:
-    """A load below which nothing collapses, sought up to the associated one (infinite: by the strength alone).
+    """Compute a lower bound of the failure load, up to the associated load (infinite: by the strength alone).
 
     strength: what points carry at most; residual: what they keep while they slide and open.
     """
@@ -69,7 +69,8 @@ def lower_bound(
 
 
 class ReducedDomain:
-    """Linear programs inside the strength of the joints (`most`), and inside the reduced domain of what they keep."""
+    """Linear programs inside the strength of the joints (`most`), and inside the reduced domain of their residual
+    strength."""
 
     def __init__(
         self, structure: LimitStructure, strength: Envelope, residual: Envelope, settings: ReducedSettings
@@ -119,7 +120,7 @@ class ReducedDomain:
         return least
 
     def reach(self, least: np.ndarray, low: float, high: float, cohesion: np.ndarray | None = None) -> float | None:
-        """The largest multiplier up to `high` in the reduced domain, if `low` is in it as well; else None.
+        """Compute the largest multiplier up to `high` in the reduced domain; None where `low` is not in it.
 
         least: normal forces of the joints that slide; cohesion: of them, None: what no opening takes away.
         """

@@ -16,7 +16,7 @@ from dem_cli.core.geometry import polygon
 
 
 class TopLoad(NamedTuple):
-    """A weight that moves with the wall and is pushed as it is."""
+    """Weight on top of a wall that moves with it and is pushed in proportion."""
 
     weight: float  # [N], or any unit that the weight of the wall has
     from_toe: float  # horizontal distance from the toe [m]
@@ -36,7 +36,7 @@ def split_load(width: float, height: float, slope: float, weight: float = 1.0, t
 
 
 def above_the_cut(width: float, height: float, slope: float) -> np.ndarray:
-    """Corners of what turns, x from the toe into the wall [m], (n, 2)."""
+    """Return the corners of the part that turns, x from the toe into the wall [m], (n, 2)."""
     rise = width * slope
     if rise < height:
         return np.array([[0.0, 0.0], [width, rise], [width, height], [0.0, height]])

@@ -10,7 +10,7 @@ from dem_cli.frozen_records import dataclass
 
 @dataclass(frozen=True)
 class PathSettings:
-    """The path of elastic, frictional joints from gravity to collapse: increments, plateau, effort."""
+    """Settings of the path of elastic, frictional joints from gravity to collapse: increments, plateau, effort."""
 
     first: float = 0.25  # displacement of the first increment, in elastic ones at the multiplier 1
     growth: float = 1.3  # of the displacement; where it doubles, walls step over the plateau that load control ends at
@@ -36,7 +36,7 @@ class PathSettings:
     most: int = 2500  # factorisations before giving up
     most_in_space: int = 1200  # the same in 3D: what ends at all ends by then
     furthest: float = 1e5  # displacement at which a structure counts as self-locking
-    plateau: float = 2e-3  # relative growth of the load over that of the displacement that is none, ...
+    plateau: float = 2e-3  # relative growth of the load over that of the displacement that counts as zero, ...
     lasting: float = 2.0  # ... where it lasts until the displacement is so many times as large, ...
     early: float = 2.0  # ... or, from this displacement on, in two increments,
     calm: float = 0.5  # or in one of less than this share
@@ -57,7 +57,7 @@ class PathSettings:
 
 @dataclass(frozen=True)
 class InteriorPointSettings:
-    """The interior point of one increment, and its way round the folds of the central path."""
+    """Settings of the interior point of one increment, and of its way round the folds of the central path."""
 
     tolerance: float = 1e-7  # infeasibility, in block weights and their displacements
     end: float = 1e-9  # of τ, over the square of the lightest block
@@ -107,7 +107,7 @@ ROUND_FOLDS_IN_SPACE = replace(ROUND_FOLDS, stride=0.2, wide=2.0, on_arc=200)
 
 @dataclass(frozen=True)
 class AssociatedSettings:
-    """The associated limit load as a cone program: where the solver stops, which errors are accepted."""
+    """Settings of the associated limit load as a cone program: where the solver stops, which errors are accepted."""
 
     feasible: float = 1e-7  # unbalanced force in own weights at which the solver may stop
     residual: float = 1e-6  # largest accepted unbalanced force in own weights
@@ -138,11 +138,11 @@ class AssociatedSettings:
 
 @dataclass(frozen=True)
 class ReducedSettings:
-    """The lower bound by the reduced domain: intervals of the load, accuracy, effort."""
+    """Settings of the lower bound by the reduced domain: intervals of the load, accuracy, effort."""
 
     intervals: int = 12  # that are tried at most
     accuracy: float = 1e-3  # of the associated load, to which the bound is sought
-    least_gain: float = 0.02  # of an interval: less is none
+    least_gain: float = 0.02  # of an interval: less counts as zero
     shorter: float = 0.25  # share of an interval that is tried where it gave nothing
     effort: float = 5e4  # linear programs × joints, at most: some seconds
     margin: float = 1e-6  # in mean weights and of a load: what the solver leaves open
@@ -151,7 +151,8 @@ class ReducedSettings:
 
 @dataclass(frozen=True)
 class LeastSettings:
-    """The least load of joints that do not dilate, as a mixed-integer program: bounds, effort, accuracy."""
+    """Settings of the least load of joints that do not dilate, as a mixed-integer program: bounds, effort,
+    accuracy."""
 
     forces: float = 20.0  # largest normal force of a contact point, in all dead and live loads together
     # Largest rate of a joint, over that of the least loaded block if it moves alone: to search and to prove with ...
@@ -165,13 +166,13 @@ class LeastSettings:
     weights: tuple[float, ...] = (1.0, 0.1, 10.0, 0.01, 100.0)  # of rates beside forces, at the end of a path
     better: float = 1e-4  # share of the load that is an improvement
     gap: float = 1e-4  # relative, of load and proved bound at which a search ends
-    carries: float = 1e-7  # force in mean weights: less is none
+    carries: float = 1e-7  # force in mean weights: less counts as zero
     accepted: float = 1e-5  # residual of the conditions, in mean weights, of a state that is believed
 
 
 @dataclass(frozen=True)
 class LimitSettings:
-    """All settings of limit analysis."""
+    """Settings of limit analysis, grouped by method."""
 
     path: PathSettings = PathSettings()
     interior_point: InteriorPointSettings = InteriorPointSettings()
@@ -187,19 +188,20 @@ class LimitSettings:
         return {2: self.path.most, 3: self.path.most_in_space}[dimension]
 
     def of_increment(self, dimension: int, folds: int = 0) -> InteriorPointSettings:
-        """The interior point in 2D or 3D, which may go round so many folds."""
+        """Choose the settings of the interior point in 2D or 3D, which may go round so many folds."""
         return {2: self.round_folds, 3: self.round_folds_in_space}[dimension] if folds else self.interior_point
 
     def too_large(self, blocks: int, dimension: int) -> bool:
-        """Whether a path takes too many factorisations for a structure of so many blocks to be followed to its end."""
+        """Test whether a structure of so many blocks takes too many factorisations to follow its path to the end."""
         return blocks > {2: self.path.large, 3: self.path.large_in_space}[dimension]
 
     def of_path(self, blocks: int, dimension: int) -> LimitSettings:
-        """Those of the path of a structure of so many blocks: one that is too large is smoothed, in the plane."""
+        """Choose the settings of the path for so many blocks: in the plane, a path that is too large is smoothed."""
         return self.smoothed() if dimension == 2 and self.too_large(blocks, dimension) else self
 
     def smoothed(self) -> LimitSettings:
-        """For large structures: increments end on the central path, in equilibrium, the corner of friction rounded off.
+        """Return settings for large structures: increments end on the central path, the corner of friction rounded
+        off.
 
         There increments are found where no state under the exact law is; T231 ends at 0.46644 for 0.46608, 578 blocks
         at 0.43724 for 0.43725, but of two branches the other may be taken (butt02: 1.2 for 1.173).

@@ -25,7 +25,7 @@ TURNS = 0.5
 
 
 class Polar(NamedTuple):
-    """What is kept of each point; all (n_points,) or (2, n_points)."""
+    """Reserves and slips of each point in polar form; all (n_points,) or (2, n_points)."""
 
     normal: np.ndarray  # N
     opening: np.ndarray  # p
@@ -35,16 +35,16 @@ class Polar(NamedTuple):
 
     @property
     def reserve(self) -> np.ndarray:
-        """c, (3, n_points)."""
+        """Reserves c as vectors, (3, n_points)."""
         return _element(self.c, self.d)
 
     @property
     def slip(self) -> np.ndarray:
-        """a, (3, n_points)."""
+        """Slips a as vectors, (3, n_points)."""
         return _element(self.a, self.d)
 
     def moved(self, by: Change) -> Polar:
-        """After a change: T and γ as they are now, but for what is across the direction of both."""
+        """Apply a change: T and γ as they are afterwards, without their part across the common direction."""
         reserve, slip = self.reserve + by.reserve, self.slip + by.slip
         d = _unit(reserve[1:] - slip[1:], self.d)
         shear = np.maximum((reserve[1:] * d).sum(axis=0), 0.0)
@@ -56,7 +56,7 @@ class Polar(NamedTuple):
 
 
 class Change(NamedTuple):
-    """A change of reserves and slips."""
+    """Change of normal forces, openings, reserves and slips."""
 
     normal: np.ndarray
     reserve: np.ndarray  # of c, (3, n_points)
@@ -65,37 +65,37 @@ class Change(NamedTuple):
 
 
 def polar(x: np.ndarray) -> Polar:
-    """Of the vector of an increment."""
+    """Unpack the variables of an increment into polar form."""
     rows = x.reshape(8, -1)
     return Polar(rows[0], rows[1], rows[2:4], rows[4:6], rows[6:])
 
 
 def change_of(x: np.ndarray) -> Change:
-    """Of the change of that vector: N, c, p, a."""
+    """Unpack the change of the variables of an increment: N, c, p, a."""
     rows = x.reshape(8, -1)
     return Change(rows[0], rows[1:4], rows[4], rows[5:])
 
 
 def _element(eigenvalues: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """(x₀, x̄) of the eigenvalues x₀ ∓ x̄·d, (3, n_points)."""
+    """Build the element (x₀, x̄) with eigenvalues x₀ ∓ x̄·d, (3, n_points)."""
     first, second = eigenvalues
     return np.concatenate([0.5 * (first + second)[None], 0.5 * (second - first) * d])
 
 
 def _eigenvalues(element: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """x₀ ∓ x̄·d, (2, n_points)."""
+    """Compute the eigenvalues x₀ ∓ x̄·d, (2, n_points)."""
     along = (d * element[1:]).sum(axis=0)
     return np.stack([element[0] - along, element[0] + along])
 
 
 def _turns(eigenvalues: np.ndarray) -> np.ndarray:
-    """Elements x̄ of which turns as it moves, (n_points,) bool."""
+    """Test whether the direction of elements x̄ turns as they move, (n_points,) bool."""
     first, second = eigenvalues
     return np.abs(second - first) > TURNS * (first + second)
 
 
 def _across(element: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """x̄ across d, (n_points,)."""
+    """Compute the component of x̄ across d, (n_points,)."""
     return d[0] * element[2] - d[1] * element[1]
 
 
@@ -115,45 +115,45 @@ class SlipCones:
         self.n_points = n_points
 
     def elastic(self, ks: np.ndarray) -> list[np.ndarray]:
-        """Nothing slips."""
+        """Return the stiffness factors where nothing slips."""
         none = np.zeros(self.n_points)
         return [ks, ks, none, none, none]
 
     def normals(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """N, p."""
+        """Return N, p."""
         return x[: self.n_points], x[self.n_points : 2 * self.n_points]
 
     def slip(self, x: np.ndarray) -> np.ndarray:
-        """a."""
+        """Return the slips a."""
         return polar(x).slip.ravel()
 
     def slides(self, x: np.ndarray) -> np.ndarray:
-        """γ."""
+        """Return the slides γ."""
         return polar(x).slip[1:].ravel()
 
     def lacks(self, limit: np.ndarray, shear: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """(μN, T) − c."""
+        """Return the residual (μN, T) − c."""
         return self.changes(limit, shear) - polar(x).reserve.ravel()
 
     def changes(self, limit: np.ndarray, shear: np.ndarray) -> np.ndarray:
-        """(μN, T)."""
+        """Return the change of (μN, T)."""
         return np.concatenate([limit, shear])
 
     def limited(self, shear: np.ndarray, limit: np.ndarray) -> np.ndarray:
-        """|T| ≤ limit, the direction kept."""
+        """Shorten shear forces to |T| ≤ limit and keep their direction."""
         force = shear.reshape(2, -1)
         length = np.sqrt((force * force).sum(axis=0))
         beyond = length > limit
         return (force * np.where(beyond, limit / np.where(beyond, length, 1.0), 1.0)).ravel()
 
     def straight(self, linear: float, turning: float) -> float:
-        """The residual of reserves and slides is made by turning, in every step."""
+        """Return the linear residual alone: turning makes that of reserves and slides anew in every step."""
         return linear
 
     def started(
         self, limit: np.ndarray, shear: np.ndarray, slip: np.ndarray, tau: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Reserve less slip, eigenvalue by eigenvalue apart."""
+        """Separate reserves from slips, eigenvalue by eigenvalue."""
         difference = (self.changes(limit, self.limited(shear, limit)) - slip).reshape(3, -1)
         d = _unit(difference[1:], np.array([[1.0], [0.0]]))
         c, a = apart(_eigenvalues(difference, d), tau)
@@ -162,13 +162,13 @@ class SlipCones:
     def joined(
         self, normal: np.ndarray, opening: np.ndarray, limit: np.ndarray, shear: np.ndarray, slip: np.ndarray
     ) -> np.ndarray:
-        """With reserves of these forces, which lie along d."""
+        """Pack the variables of an increment, with reserves of these forces along d."""
         rows = slip.reshape(4, -1)
         c = _eigenvalues(self.changes(limit, shear).reshape(3, -1), rows[2:])
         return np.concatenate([normal, opening, c.ravel(), slip])
 
     def products(self, x: np.ndarray) -> np.ndarray:
-        """N p, c₁ a₁, c₂ a₂."""
+        """Return the products N p, c₁ a₁, c₂ a₂."""
         n = self.n_points
         found = np.empty(3 * n)
         np.multiply(x[:n], x[n : 2 * n], out=found[:n])
@@ -176,7 +176,8 @@ class SlipCones:
         return found
 
     def relative(self, x: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """Of eigenvalues over themselves; across d over c₀ and a₀, an angle where the element turns."""
+        """Scale a change: eigenvalues over themselves, the part across d over c₀ and a₀ (an angle where the
+        element turns)."""
         at, by = polar(x), change_of(change)
         found = [(by.normal / at.normal)[None], (by.opening / at.opening)[None]]
         for kept, element in ((at.c, by.reserve), (at.a, by.slip)):
@@ -185,7 +186,7 @@ class SlipCones:
         return np.concatenate(found).ravel()
 
     def extremes(self, relative: np.ndarray) -> tuple[float, float]:
-        """Of the numbers, and of the eigenvalues of what changes along and across."""
+        """Find the extremes of a relative change, over numbers and over eigenvalues of changes along and across."""
         rows = relative.reshape(8, -1)
         low, high = float(rows[:2].min(initial=0.0)), float(rows[:2].max(initial=0.0))
         for first, second, across in (rows[2:5], rows[5:]):
@@ -195,20 +196,20 @@ class SlipCones:
         return low, high
 
     def fastest(self, x: np.ndarray, change: np.ndarray) -> tuple[float, float]:
-        """Along and across."""
+        """Find the fastest relative fall and growth, along and across."""
         return self.extremes(self.relative(x, change))
 
     def moved(self, x: np.ndarray, change: np.ndarray, length: float = 1.0) -> np.ndarray:
-        """Numbers added, reserves and slips turned."""
+        """Move the variables: numbers are added, reserves and slips turned."""
         return np.concatenate([np.atleast_2d(part) for part in polar(x).moved(change_of(length * change))]).ravel()
 
     def linear(self, x: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> ConeStiffness:
-        """The products made linear."""
+        """Linearise the complementarity of reserves and slips."""
         return ConeStiffness(polar(x), friction, ks, stiff_n)
 
 
 class ConeStiffness:
-    """c ∘ a = τ e made linear."""
+    """Linearised complementarity c ∘ a = τ e of points in space."""
 
     def __init__(self, at: Polar, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> None:
         self.at, self.d, self.ratios = at, at.d, at.a / at.c
@@ -221,7 +222,7 @@ class ConeStiffness:
 
     @property
     def stiffness(self) -> list[np.ndarray]:
-        """Of the tangents by themselves and by each other, and by the normal."""
+        """Return the stiffness of the tangents, their coupling, and the coupling to the normal."""
         (d1, d2), along, across = self.d, self.stiff_along, self.stiff_across
         return [
             along * d1 * d1 + across * d2 * d2, along * d2 * d2 + across * d1 * d1, (along - across) * d1 * d2,
@@ -229,29 +230,29 @@ class ConeStiffness:
         ]  # fmt: skip
 
     def towards(self, tau: np.ndarray, off: np.ndarray) -> np.ndarray:
-        """(τ − c a) / c of each pair, less what the reserves lack."""
+        """Return (τ − c a) / c of each pair, less the residual of the reserves."""
         forced = _element((tau.reshape(2, -1) - self.at.c * self.at.a) / self.at.c, self.d)
         return forced.ravel() - self._yielding(off.reshape(3, -1))
 
     def along(self) -> np.ndarray:
-        """1 / c of each pair."""
+        """Return 1 / c of each pair."""
         return _element(1.0 / self.at.c, self.d).ravel()
 
     def rubbed(self, forced: np.ndarray, off_slide: np.ndarray, push: np.ndarray) -> np.ndarray:
-        """Slips and normal forces turned into shear force by the soft joint."""
+        """Convert slips and normal forces into shear force by the soft joint."""
         slide = forced.reshape(3, -1)[1:] + off_slide.reshape(2, -1)
         return (self._stiff(slide) - self.drag * push).ravel()
 
     def sheared(self, rubbed: np.ndarray, slide: np.ndarray, closing: np.ndarray) -> np.ndarray:
-        """T falls with the slide, and with the friction of joints that open."""
+        """Compute the shear force, which falls with the slide, and with the friction of joints that open."""
         return rubbed + (self.coupling * closing - self._stiff(slide.reshape(2, -1))).ravel()
 
     def slipped(self, forced: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """Where a reserve grows its slip falls; across d both turn."""
+        """Compute slips, which fall where their reserve grows; across d both turn."""
         return forced - self._yielding(change.reshape(3, -1))
 
     def _yielding(self, element: np.ndarray) -> np.ndarray:
-        """Slips that a change of the reserves takes back, (3·n_points,)."""
+        """Compute the slips that a change of the reserves takes back, (3·n_points,)."""
         found = _element(self.ratios * _eigenvalues(element, self.d), self.d)
         across = self.turning * _across(element, self.d)
         found[1] -= across * self.d[1]
@@ -259,7 +260,7 @@ class ConeStiffness:
         return found.ravel()
 
     def _stiff(self, slide: np.ndarray) -> np.ndarray:
-        """Shear forces of a slide."""
+        """Compute the shear forces of a slide."""
         along = self.stiff_along * (self.d * slide).sum(axis=0)
         across = self.stiff_across * (self.d[0] * slide[1] - self.d[1] * slide[0])
         return np.stack([along * self.d[0] - across * self.d[1], along * self.d[1] + across * self.d[0]])

@@ -17,29 +17,29 @@ import numpy as np
 
 
 class SlipStiffness(Protocol):
-    """The condition c ∘ a = τ e made linear at one iterate, with the elastic shear of the joint; all points."""
+    """Linearised complementarity c ∘ a = τ e at one iterate, with the elastic shear of the joint; all points."""
 
     @property
     def stiffness(self) -> list[np.ndarray]:
-        """Its part of the matrix: factors of the products of rows, in the order of Slips.products_of_rows."""
+        """Return the tangential factors of the matrix, in the order of Slips.products_of_rows."""
 
     def towards(self, tau: np.ndarray, off: np.ndarray) -> np.ndarray:
-        """Change of the slips while forces stay.
+        """Compute the change of the slips while forces stay.
 
         tau: products to reach, (2·n_points,); off: what c lacks, (d·n_points,).
         """
 
     def along(self) -> np.ndarray:
-        """The same for a change of τ by one."""
+        """Compute the change of the slips for a change of τ by one."""
 
     def rubbed(self, forced: np.ndarray, off_slide: np.ndarray, push: np.ndarray) -> np.ndarray:
-        """Change of the shear forces while no block moves; forced: of slips, push: of normal forces."""
+        """Compute the change of the shear forces while no block moves; forced: of slips, push: of normal forces."""
 
     def sheared(self, rubbed: np.ndarray, slide: np.ndarray, closing: np.ndarray) -> np.ndarray:
-        """Change of the shear forces as blocks slide and joints open."""
+        """Compute the change of the shear forces as blocks slide and joints open."""
 
     def slipped(self, forced: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """Change of the slips as the reserves change, (d·n_points,)."""
+        """Compute the change of the slips as the reserves change, (d·n_points,)."""
 
 
 class Slips(Protocol):
@@ -49,60 +49,61 @@ class Slips(Protocol):
     products_of_rows: tuple[tuple[int, int], ...]
 
     def elastic(self, ks: np.ndarray) -> list[np.ndarray]:
-        """Factors of the products of rows where nothing slips."""
+        """Return the factors of the products of rows where nothing slips."""
 
     def started(
         self, limit: np.ndarray, shear: np.ndarray, slip: np.ndarray, tau: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """μN, T and slips off the boundary, with products τ, near given forces and the slip that is expected."""
+        """Compute μN, T and slips off the boundary, with products τ, near given forces and the slip that is
+        expected."""
 
     def joined(
         self, normal: np.ndarray, opening: np.ndarray, limit: np.ndarray, shear: np.ndarray, slip: np.ndarray
     ) -> np.ndarray:
-        """x; slip: as `started` gives it."""
+        """Pack the variables x of an increment; slip: as `started` gives it."""
 
     def normals(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """N and p."""
+        """Return N and p."""
 
     def slip(self, x: np.ndarray) -> np.ndarray:
-        """a, (d·n_points,)."""
+        """Return the slips a, (d·n_points,)."""
 
     def slides(self, x: np.ndarray) -> np.ndarray:
-        """γ, ((d − 1)·n_points,)."""
+        """Return the slides γ, ((d − 1)·n_points,)."""
 
     def changes(self, limit: np.ndarray, shear: np.ndarray) -> np.ndarray:
-        """Change of c as μN and T change."""
+        """Compute the change of c as μN and T change."""
 
     def lacks(self, limit: np.ndarray, shear: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """What c lacks to that of μN and T, as a change."""
+        """Return the change that c lacks to agree with μN and T."""
 
     def limited(self, shear: np.ndarray, limit: np.ndarray) -> np.ndarray:
-        """The shear forces as far as friction allows them."""
+        """Shorten shear forces to the limit of friction."""
 
     def straight(self, linear: float, turning: float) -> float:
-        """Of the residuals, what shorter steps bring down; turning: that of reserves and slides."""
+        """Select the residuals that shorter steps reduce; turning: that of reserves and slides."""
 
     def products(self, x: np.ndarray) -> np.ndarray:
-        """All N p and the eigenvalues of c ∘ a: equal on the central path."""
+        """Return all N p and the eigenvalues of c ∘ a: equal on the central path."""
 
     def relative(self, x: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """A change in units of x itself."""
+        """Express a change in units of x itself."""
 
     def extremes(self, relative: np.ndarray) -> tuple[float, float]:
-        """The fastest fall and growth of anything in x, relative to itself; at −1 x leaves its cones."""
+        """Find the fastest fall and growth of any variable, relative to itself; at −1 x leaves its cones."""
 
     def fastest(self, x: np.ndarray, change: np.ndarray) -> tuple[float, float]:
-        """The extremes of a change in units of x."""
+        """Find the extremes of a change in units of x."""
 
     def moved(self, x: np.ndarray, change: np.ndarray, length: float = 1.0) -> np.ndarray:
-        """x after so much of a change, which leaves it inside its cones."""
+        """Move x by a share of a change, which leaves it inside its cones."""
 
     def linear(self, x: np.ndarray, friction: np.ndarray, ks: np.ndarray, stiff_n: np.ndarray) -> SlipStiffness:
-        """The condition made linear; stiff_n: stiffness across the joint."""
+        """Linearise the complementarity condition; stiff_n: stiffness across the joint."""
 
 
 def apart(difference: np.ndarray, tau: float) -> tuple[np.ndarray, np.ndarray]:
-    """Two positive numbers with this difference and the product τ."""
+    """Compute two positive numbers with this difference and the product τ."""
     root = np.sqrt(difference**2 + 4.0 * tau)
     larger = 0.5 * (np.abs(difference) + root)
     first = np.where(difference > 0.0, larger, tau / larger)

@@ -1,4 +1,4 @@
-"""A state of collapse as a frame: forces at all points, blocks moved along the mechanism."""
+"""Collapse state as a frame: forces at all points, blocks moved along the mechanism."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOVING_SHARE = 1e-3  # of the largest motion of any point
 
 
 class Collapse(NamedTuple):
-    """A state of collapse, whatever found it."""
+    """Collapse state of any analysis: load, forces and mechanism."""
 
     stage: str  # "associated" or "non-associated"
     load: float  # multiplier of the live loads
@@ -28,7 +28,7 @@ class Collapse(NamedTuple):
 
 
 def frame(structure: LimitStructure, collapse: Collapse, tilting: bool = False) -> Frame:
-    """A state of collapse as a snapshot: its forces, and the structure moved a little along its mechanism.
+    """Build the frame of a collapse state: its forces, and the structure moved a little along its mechanism.
 
     Largest motion of a block: SHOWN_MOTION of the largest radius; velocities are the mechanism as it is. tilting: the
     multiplier is tan θ of a table that turns, and forces are those under the turned weight.
@@ -77,6 +77,6 @@ def _contacts(structure: LimitStructure, collapse: Collapse, moved: np.ndarray, 
 
 
 def _carried(structure: LimitStructure, moved: np.ndarray, blocks: np.ndarray) -> np.ndarray:
-    """How far its block takes every point along [m], to first order, (n_points, d)."""
+    """Compute the displacement of every point with its block [m], to first order, (n_points, d)."""
     d, arms = structure.model.dimension, structure.joints.points - structure.model.centroids[blocks]
     return moved[blocks, :d] + swept(moved[blocks, d:], arms)

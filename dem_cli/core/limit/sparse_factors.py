@@ -26,15 +26,15 @@ class Factors(Protocol):
     """LU factors of one matrix."""
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        """The solution, (n_columns,)."""
+        """Solve for one right side; returns the solution, (n_columns,)."""
 
 
 class SparseFactors(Factors, Protocol):
-    """As SuperLU has them."""
+    """Interface of the LU factors that SuperLU returns."""
 
     @property
     def perm_c(self) -> np.ndarray:
-        """Where each column went, (n_columns,)."""
+        """Column permutation: the new place of each column, (n_columns,)."""
 
 
 def factors_of(matrix: csc_matrix, order: str, pivot: float) -> SparseFactors:
@@ -62,7 +62,7 @@ def factors_of(matrix: csc_matrix, order: str, pivot: float) -> SparseFactors:
 
 @cache
 def _routine() -> Callable[..., Any] | None:
-    """SuperLU's factorisation; None where it is not where it was."""
+    """Load SuperLU's factorisation; None where SciPy no longer has it there."""
     name = f"{_FOLDER}._superlu"
     if name not in sys.modules:
         folder = Path(scipy.sparse.__file__).parent / "linalg" / "_dsolve"

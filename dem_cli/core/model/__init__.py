@@ -1,1 +1,1 @@
-"""The model of a structure: arrays only."""
+"""Model of a structure: arrays only."""

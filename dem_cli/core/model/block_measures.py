@@ -1,4 +1,4 @@
-"""Measures of the shapes of blocks: volume, narrowest width, shortest edge, radius; what scales and tolerances ask for.
+"""Measures of block shapes: volume, narrowest width, shortest edge, radius; scales and tolerances use them.
 
 Of parts and of blocks apart: those of parts are what the checks of a case need before they know whether it is sound.
 """
@@ -17,14 +17,14 @@ from dem_cli.core.geometry.topology import Topology
 
 
 class PartMeasures(NamedTuple):
-    """Of each convex part."""
+    """Volumes and sizes of each convex part."""
 
     volumes: np.ndarray  # in the plane areas, negative where corners run clockwise [m^d], (n_parts,)
     sizes: np.ndarray  # diagonals of the boxes around them [m], (n_parts,)
 
 
 class BlockMeasures(NamedTuple):
-    """Of each block."""
+    """Volumes, widths, shortest edges and radii of each block."""
 
     volumes: np.ndarray  # in the plane areas [m^d], (n_blocks,)
     widths: np.ndarray  # about the smallest side, of the narrowest part (geometry/parts.py) [m], (n_blocks,)
@@ -33,7 +33,7 @@ class BlockMeasures(NamedTuple):
 
 
 class FaceMeasures(NamedTuple):
-    """Of each face of a part in space, in the frame of its block."""
+    """Areas, normals and sides of each face of a part in space, in the frame of its block."""
 
     areas: np.ndarray  # [m²], (n_faces,)
     normals: np.ndarray  # unit, outwards, (n_faces, 3)
@@ -43,7 +43,7 @@ class FaceMeasures(NamedTuple):
 
 
 def face_measures(vertices: np.ndarray, topology: Topology) -> FaceMeasures:
-    """Of faces of polyhedra, with corners as in Model."""
+    """Compute areas, normals and sides of faces of polyhedra, with corners as in Model."""
     vectors = face_areas(vertices, topology)
     areas = np.linalg.norm(vectors, axis=1)
     start, end = vertices[topology.sides[:, :2]].swapaxes(0, 1)
@@ -54,7 +54,7 @@ def face_measures(vertices: np.ndarray, topology: Topology) -> FaceMeasures:
 
 
 def part_measures(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> PartMeasures:
-    """Of parts with corners as in Model."""
+    """Compute volumes and sizes of parts, with corners as in Model."""
     volumes = shapes_of(vertices).volumes(vertices, part_starts, topology)
     return PartMeasures(volumes, parts.sizes(vertices, part_starts))
 
@@ -62,7 +62,7 @@ def part_measures(vertices: np.ndarray, part_starts: np.ndarray, topology: Topol
 def block_measures(
     vertices: np.ndarray, part_starts: np.ndarray, topology: Topology, part_blocks: np.ndarray, of_parts: PartMeasures
 ) -> BlockMeasures:
-    """Of blocks, with corners from their centroids as in Model."""
+    """Compute volumes, widths, shortest edges and radii of blocks, with corners from their centroids as in Model."""
     n, shapes = int(part_blocks[-1]) + 1 if len(part_blocks) else 0, shapes_of(vertices)
     ends, edge_parts = shapes.edges(topology)
     start, end = vertices[ends].swapaxes(0, 1)
@@ -89,6 +89,6 @@ def half_extents(
 
 
 def median(values: np.ndarray) -> float:
-    """Median of at least one value; numpy's own loads its masked arrays first, 30 ms."""
+    """Compute the median of at least one value; numpy's own loads its masked arrays first, 30 ms."""
     ordered, half = np.sort(values), (len(values) - 1) / 2
     return float(ordered[[math.floor(half), math.ceil(half)]].mean())

@@ -1,4 +1,4 @@
-"""What a generator returns: blocks with a name, a shape and a material, in their final place."""
+"""Blocks from a generator, with a name, a shape and a material, in their final place."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PIECE = "/"  # between the name of a stone and that of each piece which it can c
 
 @dataclass(frozen=True)
 class Block:
-    """One rigid block.
+    """Rigid block with name, shape and material.
 
     parts      convex pieces that move as one: in the plane (n, 2) arrays of corners [m], counter-clockwise; in space
                polyhedra
@@ -26,8 +26,8 @@ class Block:
                None: half the thickness to either side
     mass       of the whole block [kg]; None: by the density of its material
     crack      of a piece of a stone that can crack: the joint between its pieces; empty: it is a whole stone
-    path       where in the case file it comes from, for error messages
-    rank       place among the blocks of the case, in its order
+    path       where in the input it comes from, for error messages
+    rank       place among the blocks of the input, in its order
     """
 
     id: str
@@ -45,7 +45,7 @@ class Block:
 
     @property
     def stone(self) -> str:
-        """Name of the stone that it is, or is a piece of."""
+        """Name of the stone that the block is, or is a piece of."""
         return self.id.rpartition(PIECE)[0] if self.crack else self.id
 
 

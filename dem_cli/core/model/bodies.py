@@ -14,7 +14,7 @@ from dem_cli.core.model.model import NO_AXES, NONE
 
 
 class BodyArrays(NamedTuple):
-    """The fields of Model that follow from shapes and densities: Model(**bodies._asdict(), ...)."""
+    """Fields of Model that follow from shapes and densities: Model(**bodies._asdict(), ...)."""
 
     dimension: int
     masses: np.ndarray
@@ -32,7 +32,7 @@ class BodyArrays(NamedTuple):
 def bodies_of(
     dimension: int, blocks: Sequence[Sequence[Any]], densities: np.ndarray, thickness: np.ndarray
 ) -> BodyArrays:
-    """Bodies of blocks, each of its parts (model.blocks.Block.parts).
+    """Build the bodies of blocks, each from its parts (model.blocks.Block.parts).
 
     densities: [kg/m3], (n_blocks,); thickness: depth out of plane [m], (n_blocks,), in space 1.
     """
@@ -40,7 +40,7 @@ def bodies_of(
 
 
 def planar_bodies(blocks: Sequence[Sequence[np.ndarray]], densities: np.ndarray, thickness: np.ndarray) -> BodyArrays:
-    """Of blocks of polygons (n, 2), counter-clockwise."""
+    """Build the bodies of blocks of polygons (n, 2), counter-clockwise."""
     part_blocks, part_starts, vertices, vertex_blocks = _corners(blocks, [part for parts in blocks for part in parts])
     areas = polygon.compound(polygon.properties_of_all(vertices, part_starts), part_blocks, len(blocks))
     return BodyArrays(
@@ -57,7 +57,7 @@ def planar_bodies(blocks: Sequence[Sequence[np.ndarray]], densities: np.ndarray,
 def spatial_bodies(
     blocks: Sequence[Sequence[Polyhedron]], densities: np.ndarray, thickness: np.ndarray | float = 1.0
 ) -> BodyArrays:
-    """Of blocks of polyhedra; bodies keep the axes of the world, their principal axes are told beside them."""
+    """Build the bodies of blocks of polyhedra; they keep the axes of the world, with principal axes beside them."""
     parts = [part for of_block in blocks for part in of_block]
     part_blocks, part_starts, vertices, vertex_blocks = _corners(blocks, [part.vertices for part in parts])
     topology = topology_of_polyhedra(parts)

@@ -6,12 +6,13 @@ import numpy as np
 
 
 def repeated(rows: np.ndarray, copies: int) -> np.ndarray:
-    """Rows (n, ...) of so many copies, (copies · n, ...)."""
+    """Repeat rows (n, ...) for so many copies, (copies · n, ...)."""
     return rows if copies == 1 else np.tile(rows, (copies, *[1] * (rows.ndim - 1)))
 
 
 def numbered_through(numbers: np.ndarray, count: int, copies: int) -> np.ndarray:
-    """Numbers (n, ...) of what a structure has `count` of, for so many copies, (copies · n, ...): each counts on."""
+    """Number entries through for so many copies, (copies · n, ...), from numbers (n, ...) below `count` of one
+    structure."""
     if copies == 1:
         return numbers
     firsts = np.repeat(count * np.arange(copies), len(numbers))

@@ -1,4 +1,4 @@
-"""Follower loads: forces that go along with a material point of their block, and may turn with the block."""
+"""Follower loads: forces that move with a material point of their block, and may turn with the block."""
 
 from __future__ import annotations
 
@@ -19,11 +19,12 @@ class FollowingLoads(NamedTuple):
     turning: np.ndarray  # whether the direction turns with the block, (n,) bool
 
     def shifted(self, shifts: np.ndarray) -> FollowingLoads:
-        """The same of blocks whose centroids are elsewhere by so much [m], (n_blocks, d)."""
+        """Shift the loads to blocks whose centroids are elsewhere by so much [m], (n_blocks, d)."""
         return self._replace(arms=self.arms - shifts[self.blocks])
 
     def change(self, orientations: np.ndarray, dead: bool) -> np.ndarray:
-        """What dead or live ones are more than as drawn, about the centroids [N, N m], (n_blocks, n_dof).
+        """Compute the change of dead or live follower loads since the start, about the centroids [N, N m],
+        (n_blocks, n_dof).
 
         orientations: of all blocks, as Bodies has them.
         """
@@ -36,7 +37,7 @@ class FollowingLoads(NamedTuple):
         return total
 
     def beyond(self, orientations: np.ndarray, rotations: np.ndarray) -> float:
-        """Work-conjugate displacement of the live ones beyond that of their drawn resultants [J]: F·(R r − r) − M·θ.
+        """Compute q·u of live follower loads beyond that of their drawn resultants [J]: F·(R r − r) − M·θ.
 
         rotations: rotation vectors of all blocks (n_blocks, r). Along the directions as drawn.
         """

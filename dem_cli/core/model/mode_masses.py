@@ -26,7 +26,8 @@ _TURNS = {  # velocity gradients of spins of 1 rad/s about the axes, (r, d, d)
 
 
 def mass_matrices(model: Model) -> np.ndarray:
-    """M of rotations [kg m²] and modes [kg] of all blocks along their own axes, (n_blocks, r + m, r + m).
+    """Mass matrix of rotations [kg m²] and modes [kg] of all blocks along their own axes, (n_blocks, r + m, r +
+    m).
 
     What a block has no stiffness for (rigid ones), or restraints hold, is coupled with nothing; modes without stiffness
     have the mass of their block.
@@ -76,7 +77,7 @@ def _particles(model: Model) -> list[tuple[np.ndarray, np.ndarray]]:
 
 
 def _with_quadratic_modes(model: Model, linear: np.ndarray) -> np.ndarray:
-    """With quadratic modes, which are coupled with linear motion where a block has no two axes of symmetry."""
+    """Add quadratic modes, which are coupled with linear motion where a block has no two axes of symmetry."""
     n, k = linear.shape[:2]
     shapes = model.mode_shapes
     found = np.zeros((n, k + shapes.shape[1], k + shapes.shape[1]))

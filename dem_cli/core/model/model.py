@@ -1,4 +1,4 @@
-"""What the solvers see of a structure: arrays only, the same fields in 2D and 3D.
+"""Model of a structure for the solvers: arrays only, the same fields in 2D and 3D.
 
 Generalised vectors have n_dof = d + r columns: d translations, then r rotations
 (2D: x, y, angle about z; 3D: x, y, z and three rotations).
@@ -35,7 +35,7 @@ NO_SHAPES, NO_STRAINS = np.zeros((0, 6, 2, 6)), np.zeros(0)
 
 
 class ModelArrays(NamedTuple):
-    """What a model is made of, as results keep it (but for names of the case file)."""
+    """Arrays of a model, as results store them (but for names of the input)."""
 
     dimension: int  # 2 or 3
     block_ids: tuple[str, ...]  # name of each block
@@ -51,8 +51,8 @@ class ModelArrays(NamedTuple):
     vertices: np.ndarray  # corners from the centroid of their block [m], (n_vertices, d); counter-clockwise in 2D
     dead_loads: np.ndarray  # weight and dead point loads [N, N m], (n_blocks, n_dof)
     live_loads: np.ndarray  # loads that the multiplier acts on [N, N m], (n_blocks, n_dof)
-    aliases: tuple[tuple[str, str], ...] = ()  # other names of blocks in the case file: (alias, name of the block)
-    selections: tuple[tuple[str, tuple[str, ...]], ...] = ()  # what the case file calls several blocks: (name, ids)
+    aliases: tuple[tuple[str, str], ...] = ()  # other names of blocks: (alias, name of the block)
+    selections: tuple[tuple[str, tuple[str, ...]], ...] = ()  # names of several blocks: (name, ids)
     # In space alone; in the plane they are empty, for there faces and axes follow from the corners:
     part_faces: np.ndarray = NONE  # part p has the faces part_faces[p]:part_faces[p + 1], (n_parts + 1,) int64
     face_starts: np.ndarray = NONE  # face f has face_corners[face_starts[f]:face_starts[f + 1]], (n_faces + 1,) int64
@@ -72,13 +72,11 @@ class ModelArrays(NamedTuple):
     restrained: np.ndarray = NO_RESTRAINTS  # motions of blocks that are held, (n_blocks, d + r) bool
     # Of stones that can crack alone, else empty:
     pieces: np.ndarray = NO_PIECES  # stone that each block is a piece of, by number, and the joint between its pieces,
-    # by its number in the case; −1: it is a whole stone, (n_blocks, 2) int64
+    # by the number of its name; −1: it is a whole stone, (n_blocks, 2) int64
     # Of structures whose head joints are not like their beds alone, else empty:
     courses: np.ndarray = NO_COURSES  # course that each block is laid in, by number, −1: none, and the row across that,
     # 0: it goes through all of them, (n_blocks, 2) int64
-    ranks: np.ndarray = (
-        NONE  # place of each block in the case file, in which order results have them, (n_blocks,) int64;
-    )
+    ranks: np.ndarray = NONE  # place of each block in the input, in which order results have them, (n_blocks,) int64;
     # empty: blocks are in that order
 
 
@@ -92,11 +90,11 @@ WHERE_ASKED_FOR = (
     "pieces",
     "courses",
     "ranks",
-)  # rows of blocks; empty where the case has nothing of it
+)  # rows of blocks; empty where the model has none
 
 
 class Model(ModelArrays):
-    """A structure that does not change during a run. Blocks are numbered 0 … n_blocks − 1.
+    """Structure that does not change during a run. Blocks are numbered 0 … n_blocks − 1.
 
     What follows from its arrays (names, topology, measures of the blocks) is worked out once, when it is first asked
     for; a model with other arrays (`_replace`, `only`) works it out anew.
@@ -114,7 +112,7 @@ class Model(ModelArrays):
 
     @property
     def n_modes(self) -> int:
-        """By how many modes blocks deform; 0: rigid blocks."""
+        """Number of modes by which blocks deform; 0: rigid blocks."""
         return self.mode_stiffness.shape[1]
 
     @cached_property
@@ -125,7 +123,7 @@ class Model(ModelArrays):
 
     @cached_property
     def held_columns(self) -> np.ndarray:
-        """Which columns of the free blocks are restrained, block by block, (n_free_blocks·(d + r),) bool."""
+        """Restrained columns of the free blocks, block by block, (n_free_blocks·(d + r),) bool."""
         return self.held[~self.fixed].ravel()
 
     @property
@@ -146,7 +144,7 @@ class Model(ModelArrays):
         return {name: np.array([names[i] for i in ids if i in names], np.int64) for name, ids in self.selections}
 
     def chosen(self, name: str | None, fixed: bool | None = None) -> np.ndarray:
-        """Numbers of the blocks that a name in the case file stands for; none where there is no such name.
+        """Numbers of the blocks that a name stands for; none where there is no such name.
 
         fixed: of several, those that are supports alone, or (False) those that can move, where there are any.
         """
@@ -157,7 +155,7 @@ class Model(ModelArrays):
         return kept if len(kept) else found
 
     def held_among(self, name: str | None) -> np.ndarray:
-        """Numbers of those blocks of a name in the case file that are fixed or restrained in some motion."""
+        """Numbers of those blocks of a name that are fixed or restrained in some motion."""
         found = self.chosen(name)
         return found[self.held[found].any(axis=1)]
 
@@ -199,7 +197,8 @@ class Model(ModelArrays):
         return half_extents(self.vertices, self.vertex_blocks, self.topology, self.part_blocks)
 
     def joints_between(self, by_material: np.ndarray, blocks: np.ndarray, heads: np.ndarray) -> np.ndarray:
-        """The named joint of each pair of blocks (n, 2), (n,): of their materials, or within the stone of both.
+        """Find the named joint of each pair of blocks (n, 2), (n,): of their materials, or within the stone of
+        both.
 
         by_material: joint of each pair of materials, (n_materials, n_materials) int64; heads: the joint that lies in
         the head joints of each named one, −1: nothing does, (n_named,) int64. Returns −1 where there is nothing.
@@ -214,9 +213,10 @@ class Model(ModelArrays):
         return np.where((stones[:, 0] == stones[:, 1]) & (stones[:, 0] >= 0), self.pieces[blocks[:, 0], 1], named)
 
     def side_by_side(self, blocks: np.ndarray) -> np.ndarray:
-        """Whether each pair of blocks (n, 2) shares a head joint: both lie in one row of one course, (n,) bool.
+        """Test whether each pair of blocks (n, 2) shares a head joint: both lie in one row of one course, (n,)
+        bool.
 
-        None is where the case does not tell head joints from others: the model knows no courses then.
+        All are False where the model has no courses: head joints are not distinguished then.
         """
         if not len(self.courses):
             return np.zeros(len(blocks), bool)
@@ -224,7 +224,7 @@ class Model(ModelArrays):
         return (course == other) & (course >= 0) & ((row == beside) | (row == 0) | (beside == 0))
 
     def only(self, blocks: Sequence[int], fixed: np.ndarray) -> Model:
-        """The model with these blocks alone, in this order, without links; fixed: which cannot move, (n,) bool."""
+        """Reduce the model to these blocks, in this order, without links; fixed: which cannot move, (n,) bool."""
         of_blocks = [np.flatnonzero(self.part_blocks == block) for block in blocks]
         pick, parts = np.array(blocks), np.concatenate(of_blocks)
         part_starts, corners = _rows(self.part_starts, parts)
@@ -259,7 +259,7 @@ class Model(ModelArrays):
         )
 
     def parts_alone(self) -> Model:
-        """Every part a block of its own that can move; for detection, masses and loads are not divided."""
+        """Make every part a block of its own that can move; for detection, masses and loads are not divided."""
         return self._replace(
             part_blocks=np.arange(self.n_parts),
             fixed=np.zeros(self.n_parts, bool),
@@ -275,7 +275,7 @@ class Model(ModelArrays):
 
 
 def _rows(starts: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Some rows of compressed sparse rows: their new starts, and the places of their entries, row by row."""
+    """Select rows of compressed sparse rows: their new starts, and the places of their entries, row by row."""
     counts = np.diff(starts)[rows]
     upto = np.concatenate([[0], np.cumsum(counts)])
     return upto, np.arange(upto[-1]) + np.repeat(starts[rows] - upto[:-1], counts)

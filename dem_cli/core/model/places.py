@@ -1,4 +1,4 @@
-"""Places of blocks in the undeformed structure: corners, and which block contains a point."""
+"""Places of blocks in the undeformed structure: corners, and search of the block that contains a point."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from dem_cli.core.model.model import Model
 
 
 def undeformed(model: Model) -> np.ndarray:
-    """All corners in place before anything moved [m], (n_vertices, d)."""
+    """Return all corners before anything moved [m], (n_vertices, d)."""
     return model.vertices + model.centroids[model.vertex_blocks]
 
 
@@ -27,7 +27,7 @@ def blocks_at(model: Model, point: np.ndarray) -> np.ndarray:
 
 
 def blocks_at_all(model: Model, points: np.ndarray) -> list[np.ndarray]:
-    """The same of many points (n, d), one after the other."""
+    """Find all blocks that contain each of many points (n, d), one array of block numbers per point."""
     inside: list[list[int]] = [[] for _ in points]
     for part, found in _points_in_parts(model, points):
         for point in found.tolist():
@@ -36,7 +36,7 @@ def blocks_at_all(model: Model, points: np.ndarray) -> list[np.ndarray]:
 
 
 def inside_blocks(model: Model, points: np.ndarray) -> np.ndarray:
-    """Which of many points (n, d) lie in a block of the undeformed structure, as `block_at` has it, (n,) bool."""
+    """Test whether points (n, d) lie in a block of the undeformed structure, as `block_at` has it, (n,) bool."""
     found = np.zeros(len(points), bool)
     for _, inside in _points_in_parts(model, points):
         found[inside] = True
@@ -44,7 +44,8 @@ def inside_blocks(model: Model, points: np.ndarray) -> np.ndarray:
 
 
 def _points_in_parts(model: Model, points: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
-    """Parts with points inside, and which of many (n, d) these are; compared are those within their width alone."""
+    """Find parts with points inside, and which of many (n, d) these are; compared are those within their width
+    alone."""
     vertices, first_faces = undeformed(model), model.topology.part_faces
     normals, on_faces = _normals(model, vertices), vertices[_on_faces(model)]
     slack, order = _slack(model), np.argsort(points[:, 0], kind="stable")
@@ -62,7 +63,7 @@ def _points_in_parts(model: Model, points: np.ndarray) -> Iterator[tuple[int, np
 
 
 def _on_faces(model: Model) -> np.ndarray:
-    """A corner of each face, (n_faces,)."""
+    """Return a corner of each face, (n_faces,)."""
     return model.topology.face_corners[model.topology.face_starts[:-1]]
 
 
@@ -72,5 +73,5 @@ def _normals(model: Model, vertices: np.ndarray) -> np.ndarray:
 
 
 def _slack(model: Model) -> float:
-    """How far outside of a block a point still counts as on its edge [m]."""
+    """Return the distance outside of a block at which a point still counts as on its edge [m]."""
     return 1e-9 * float(model.parts.sizes.max())

@@ -24,7 +24,7 @@ _WEIGHTS = np.repeat([0.223381589678011, 0.109951743655322], 3)
 
 
 def terms(arms: np.ndarray) -> np.ndarray:
-    """1, x, y, x², x y, y² at arms (..., 2) [m], (..., 6)."""
+    """Evaluate 1, x, y, x², x y, y² at arms (..., 2) [m], (..., 6)."""
     x, y = arms[..., 0], arms[..., 1]
     return np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-1)
 
@@ -53,7 +53,7 @@ def quadratic_modes(
 
 
 def _of_block(parts: list[np.ndarray], young: float, poisson: float) -> tuple[np.ndarray, np.ndarray]:
-    """young: Young's modulus × thickness [N/m]."""
+    """Compute stiffness and shapes of the quadratic modes of one block; young: Young's modulus × thickness [N/m]."""
     points, weights = quadrature(parts)
     area, values = weights.sum(), terms(points)
     pure = np.zeros((N_QUADRATIC, 2, TERMS))
@@ -79,7 +79,7 @@ def _of_block(parts: list[np.ndarray], young: float, poisson: float) -> tuple[np
 def _elasticity(
     shapes: np.ndarray, points: np.ndarray, weights: np.ndarray, young: float, poisson: float
 ) -> np.ndarray:
-    """∫ ε : C : ε of each two fields, plane stress [N/m], (6, 6)."""
+    """Integrate ∫ ε : C : ε of each two fields, plane stress [N/m], (6, 6)."""
     (x, y), zero, one = points.T, np.zeros(len(points)), np.ones(len(points))
     by_x = product(shapes, np.stack([zero, one, zero, 2.0 * x, y, zero]))  # (6, 2, n_points)
     by_y = product(shapes, np.stack([zero, zero, one, zero, x, 2.0 * y]))
@@ -108,19 +108,22 @@ def bent_by(modes: np.ndarray, shapes: np.ndarray) -> np.ndarray:
 
 
 def displacements(shapes: np.ndarray, arms: np.ndarray, turns: np.ndarray) -> np.ndarray:
-    """R φ_k at arms (..., 2) [m] along the axes of the world, (..., 6, 2); turns: cosine and sine of R, (..., 2)."""
+    """Evaluate displacements R φ_k at arms (..., 2) [m] along the axes of the world, (..., 6, 2); turns: cosine
+    and sine of R, (..., 2)."""
     cosines, sines = turns[..., 0], turns[..., 1]
     own = turned_by(arms, cosines, -sines)
     return turned_by(np.einsum("...kim,...m->...ki", shapes, terms(own)), cosines[..., None], sines[..., None])
 
 
 def quadratic_loads(arms: np.ndarray, forces: np.ndarray, shapes: np.ndarray) -> np.ndarray:
-    """What forces (n, 2) [N] at arms (n, 2) from the centroids do to the modes of shapes (n, 6, 2, 6) [N], (n, 6)."""
+    """Compute modal loads of forces (n, 2) [N] at arms (n, 2) from the centroids on shapes (n, 6, 2, 6) [N], (n,
+    6)."""
     return np.einsum("nkim,nm,ni->nk", shapes, terms(arms), forces)
 
 
 def moved_by_modes(modes: np.ndarray, arms: np.ndarray, radii: np.ndarray, shapes: np.ndarray) -> np.ndarray:
-    """How far their blocks' deformation moves points, in the axes of the blocks [m], (n, d).
+    """Compute the displacement of points by the deformation of their blocks, in the axes of the blocks [m], (n,
+    d).
 
     modes: amplitudes of the block of each point [m], (n, m); arms: from its centroid, undeformed [m], (n, d); radii
     [m], (n,); shapes: of quadratic modes, (n, 6, 2, 6), or none of them.

@@ -1,4 +1,4 @@
-"""Scales of a structure that tolerances and "auto" joints are made of."""
+"""Scales of a structure for tolerances and "auto" joints: lengths, weights and depth."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ WEIGHTLESS = 1e-9  # of the mean weight: forces of blocks that are lighter are l
 
 
 def origin_of(model: Model) -> np.ndarray:
-    """Where coordinates are best counted from [m], (d,): [0, 0], but for a structure far from there among its blocks.
+    """Choose the origin of coordinates [m], (d,): [0, 0], but for a structure far from there among its blocks.
 
     A coordinate has 16 digits; of a block that is 1e5 times its size away, too few are left to see joints close.
     """
@@ -61,7 +61,8 @@ def stiffness_scale(model: Model) -> float:
 
 
 def levels(joints: np.ndarray, fixed: np.ndarray) -> np.ndarray:
-    """Joints between each block and the supports; −1: it hangs on none. joints: (n, 2) blocks; (n_blocks,) int64."""
+    """Count the joints between each block and the supports; −1: not connected. joints: (n, 2) blocks; (n_blocks,)
+    int64."""
     level, at = np.where(fixed, 0, -1), 0
     while True:
         a, b = level[joints].T
@@ -73,12 +74,12 @@ def levels(joints: np.ndarray, fixed: np.ndarray) -> np.ndarray:
 
 
 def depth(joints: np.ndarray, fixed: np.ndarray) -> int:
-    """How many joints lie between the supports and the block furthest from them; joints: (n, 2) blocks."""
+    """Count the joints between the supports and the block furthest from them; joints: (n, 2) blocks."""
     return int(levels(joints, fixed).max(initial=0))
 
 
 def structures(joints: np.ndarray, fixed: np.ndarray) -> np.ndarray:
-    """Which connected structure each block belongs to, by the number of its first block; −1: a support, (n_blocks,).
+    """Label the connected structure of each block by the number of its first block; −1: a support, (n_blocks,).
 
     Supports connect nothing: two walls on one base are two structures.
     """
@@ -95,5 +96,5 @@ def structures(joints: np.ndarray, fixed: np.ndarray) -> np.ndarray:
 
 
 def largest_structure(joints: np.ndarray, fixed: np.ndarray) -> int:
-    """How many free blocks the largest structure has (`structures`); joints: (n, 2) blocks."""
+    """Count the free blocks of the largest structure (`structures`); joints: (n, 2) blocks."""
     return int(np.bincount(structures(joints, fixed)[~fixed]).max(initial=0))

@@ -1,4 +1,4 @@
-"""Section cuts: a line across a pier in the plane, a plane polygon in space; what is carried from side to side of it.
+"""Section cuts: a line across a pier in the plane, a plane polygon in space; forces carried from side to side.
 
 A block is on the side of its centroid, and a cut passes through the joints between blocks on both sides whose middle
 lies across it, between its ends. The part of the structure on one side is then cut free along joints, and all that is
@@ -21,18 +21,18 @@ FLAT = 1e-6  # of the same: corners of a polygon so far out of its plane are in 
 
 
 class SectionCut(NamedTuple):
-    """A straight cut of the undeformed structure."""
+    """Straight cut of the undeformed structure."""
 
     middle: np.ndarray  # of the line, or centroid of the polygon [m], (d,)
     axes: np.ndarray  # unit: the normal, along the line or first side, in space the normal × that, (d, d)
     outline: np.ndarray  # its corners from the middle, along the axes behind the normal [m], (n, d − 1)
 
     def sides(self, places: np.ndarray) -> np.ndarray:
-        """Whether places (n, d) lie beyond the cut, where its normal points, (n,) bool."""
+        """Test whether places (n, d) lie beyond the cut, where its normal points, (n,) bool."""
         return product(places - self.middle, self.axes[0]) > 0.0
 
     def across(self, places: np.ndarray) -> np.ndarray:
-        """Whether places (n, d) lie across the cut and not beside it, seen along its normal, (n,) bool."""
+        """Test whether places (n, d) lie across the cut and not beside it, seen along its normal, (n,) bool."""
         found = product(places - self.middle, self.axes[1:].T)
         reach = float(np.ptp(self.outline, axis=0).max())
         if found.shape[1] == 1:
@@ -48,7 +48,7 @@ class SectionCut(NamedTuple):
         return inside & ~near
 
     def passes(self, centroids: np.ndarray, blocks: np.ndarray, places: np.ndarray) -> np.ndarray:
-        """Which joints it passes through, (n,) bool.
+        """Find the joints that the cut passes through, (n,) bool.
 
         centroids: of all undeformed blocks [m], (n_blocks, d); blocks: of each joint, (n, 2); places: undeformed
         middles of the joints [m], (n, d).
@@ -58,7 +58,7 @@ class SectionCut(NamedTuple):
 
 
 class SectionForces(NamedTuple):
-    """What the part beyond a cut gives to the part before it, at the middle of the cut."""
+    """Section forces at the middle of a cut: from the part beyond it on the part before it."""
 
     normal_force: float  # compression positive [N]
     shear_force: float  # along the line or the first side [N]
@@ -69,7 +69,7 @@ class SectionForces(NamedTuple):
 
 
 def section_cut(corners: Sequence[Sequence[float]]) -> SectionCut:
-    """The cut along a line from A to B, its normal to the left, or over a polygon, whose corners turn about its normal.
+    """Build the cut along a line from A to B, normal to the left, or over a polygon that turns about its normal.
 
     corners: [m], (2, 2) or (n, 3). Raises ValueError, with the reason, for a line without length, for corners that are
     too few, the same, or not in one plane.
@@ -100,13 +100,14 @@ def section_cut(corners: Sequence[Sequence[float]]) -> SectionCut:
 
 
 def drift_ends(corners: Sequence[Sequence[float]], height: float) -> list[np.ndarray]:
-    """Both ends of the height of a pier [m]: half of it before the middle of its cut, and half of it beyond."""
+    """Return both ends of the height of a pier [m]: half of it before the middle of its cut, and half of it beyond."""
     cut = section_cut(corners)
     return [cut.middle + share * height * cut.axes[0] for share in (-0.5, 0.5)]
 
 
 def section_forces(cut: SectionCut, places: np.ndarray, forces: np.ndarray) -> SectionForces:
-    """Resultants of the forces [N], (n, d), that the part beyond gives to the part before it at places [m], (n, d)."""
+    """Compute resultants of the forces [N], (n, d), that the part beyond exerts on the part before it at places
+    [m], (n, d)."""
     arms, given = product(places - cut.middle, cut.axes.T), product(forces, cut.axes.T)
     normal, along = -given[:, 0], given[:, 1]
     moment = float((normal * arms[:, 1] + along * arms[:, 0]).sum())
@@ -121,7 +122,7 @@ def section_forces(cut: SectionCut, places: np.ndarray, forces: np.ndarray) -> S
 
 
 def _centroid(corners: np.ndarray) -> np.ndarray:
-    """Of the area of a polygon (n, 2) that turns counter-clockwise [m], (2,)."""
+    """Compute the centroid of a polygon (n, 2) that turns counter-clockwise [m], (2,)."""
     after = np.roll(corners, -1, axis=0)
     twice = cross(corners, after)
     middle: np.ndarray = ((corners + after) * twice[:, None]).sum(axis=0) / (3.0 * twice.sum())

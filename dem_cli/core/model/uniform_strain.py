@@ -41,7 +41,7 @@ def mode_stiffness(
 
 
 def mode_loads(arms: np.ndarray, forces: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """What forces (n, d) [N] at arms (n, d) from the centroids do to the modes [N], (n, m); radii [m], (n,)."""
+    """Compute modal loads of forces (n, d) [N] at arms (n, d) from the centroids [N], (n, m); radii [m], (n,)."""
     return np.einsum("ni,mij,nj->nm", forces, BASIS[arms.shape[1]], arms) / radii[:, None]
 
 
@@ -57,7 +57,7 @@ def turned_mode_loads(loads: np.ndarray, rotations: np.ndarray) -> np.ndarray:
 
 
 def _basis_of(modes: np.ndarray) -> np.ndarray:
-    """B_k of blocks with these amplitudes; in the plane quadratic modes may come behind them."""
+    """Return B_k of blocks with these amplitudes; in the plane quadratic modes may come behind them."""
     return _SPATIAL if modes.shape[1] == len(_SPATIAL) else _PLANAR
 
 
@@ -75,7 +75,7 @@ def stresses(modes: np.ndarray, stiffness: np.ndarray, volumes: np.ndarray, radi
 
 
 def components(stresses: np.ndarray) -> np.ndarray:
-    """xx, yy, xy, in space xx, yy, zz, yz, zx, xy of symmetric tensors (n, d, d), (n, 3 or 6)."""
+    """Return components xx, yy, xy, in space xx, yy, zz, yz, zx, xy of symmetric tensors (n, d, d), (n, 3 or 6)."""
     rows, columns = ([0, 1, 0], [0, 1, 1]) if stresses.shape[1] == 2 else ([0, 1, 2, 1, 2, 0], [0, 1, 2, 2, 0, 1])
     return stresses[:, rows, columns]
 
@@ -87,13 +87,14 @@ def gradients_of(modes: np.ndarray, radii: np.ndarray, turns: np.ndarray) -> np.
 
 
 def covectors_of(gradients: np.ndarray) -> np.ndarray:
-    """F⁻ᵀ of gradients F, row by row: what takes normals of faces along, (n_blocks, d·d)."""
+    """Compute F⁻ᵀ of gradients F, row by row, which transforms normals of faces, (n_blocks, d·d)."""
     d = int(np.sqrt(gradients.shape[1]))
     return inverse(gradients.reshape(-1, d, d)).swapaxes(1, 2).reshape(-1, d * d)
 
 
 def rotated_basis(gradients: np.ndarray) -> np.ndarray:
-    """R B_k F⁻¹ of blocks with gradients F (n_blocks, d, d): velocity gradients of their modes, (n_blocks, m, d, d)."""
+    """Compute R B_k F⁻¹ of blocks with gradients F (n_blocks, d, d): velocity gradients of their modes, (n_blocks,
+    m, d, d)."""
     backwards, basis = inverse(gradients), BASIS[gradients.shape[1]]
     _, axes = diagonalised(product(gradients.swapaxes(1, 2), gradients))
     turned = product(gradients, axes)

@@ -28,7 +28,7 @@ LONGEST_PERIOD = 4.0  # s: up to here EN 1998-1 3.2.2.2 gives the spectrum; beyo
 
 @dataclass(frozen=True)
 class TargetSpectrum:
-    """A response spectrum to meet: pseudo-acceleration [m/s2] by period [s], for a damping ratio."""
+    """Response spectrum to meet: pseudo-acceleration [m/s2] by period [s], for a damping ratio."""
 
     acceleration: Callable[[np.ndarray], np.ndarray]
     ground: float  # acceleration at period 0 [m/s2]
@@ -40,7 +40,7 @@ class TargetSpectrum:
         return self.acceleration(np.asarray(periods, float))
 
     def scaled(self, factor: float) -> TargetSpectrum:
-        """The same spectrum, `factor` times as high."""
+        """Scale the spectrum by a factor."""
         if factor == 1.0:
             return self
         title = f"{factor:g} × {self.title}"
@@ -50,12 +50,13 @@ class TargetSpectrum:
 
 
 def damping_correction(damping: float) -> float:
-    """η = √(10/(5 + ξ)) ≥ 0.55, ξ in per cent (EN 1998-1, equation 3.6); `damping` is a ratio."""
+    """Compute the damping correction η = √(10/(5 + ξ)) ≥ 0.55, ξ in per cent (EN 1998-1, equation 3.6); `damping`
+    is a ratio."""
     return max(float(np.sqrt(10.0 / (5.0 + 100.0 * damping))), 0.55)
 
 
 def eurocode(kind: str, soil: str, ag: float, damping: float = 0.05) -> TargetSpectrum:
-    """Elastic spectrum, equations 3.2 to 3.5; kind "EC8-1" or "EC8-2", ag on rock [m/s2]."""
+    """Build the elastic spectrum of Eurocode 8, equations 3.2 to 3.5; kind "EC8-1" or "EC8-2", ag on rock [m/s2]."""
     s, tb, tc, td = SOILS[kind][soil]
     eta = damping_correction(damping)
 
@@ -69,7 +70,7 @@ def eurocode(kind: str, soil: str, ag: float, damping: float = 0.05) -> TargetSp
 
 
 def listed(points: Sequence[tuple[float, float]], damping: float = 0.05) -> TargetSpectrum:
-    """A spectrum through points (period [s], acceleration [m/s2]), linear between them, constant beyond.
+    """Build a spectrum through points (period [s], acceleration [m/s2]), linear between them, constant beyond.
 
     The ground acceleration is what the list says at period 0, or at the shortest one.
     """

@@ -21,7 +21,7 @@ DAMPING = 0.05  # (4)c: of both spectra
 
 
 class Clause(NamedTuple):
-    """A clause of 3.2.3.1.2, and whether a suite meets it."""
+    """Clause of EN 1998-1:2004, 3.2.3.1.2, and whether a suite meets it."""
 
     number: str  # "(4)b"
     met: bool | None  # None: cannot be judged
@@ -35,14 +35,14 @@ def clauses(
     elastic: TargetSpectrum | None,
     first_period: float | None = None,
 ) -> list[Clause]:
-    """What each clause says of a suite of motions.
+    """Check a suite of motions against each clause of EN 1998-1:2004, 3.2.3.1.2.
 
     plateau: how long they stay strong [s]; target: the spectrum that they were made for, as strong as they are;
     elastic: that for a damping of 5 %, None where it is not known; first_period: T1 of the structure [s].
     """
-    few = f"{len(motions)} record{'s' * (len(motions) != 1)}, at least {FEWEST} are asked for"
+    few = f"{len(motions)} record{'s' * (len(motions) != 1)}, at least {FEWEST} are required"
     found = [
-        Clause("(3)", plateau >= STATIONARY, f"strong for {plateau:g} s, {STATIONARY:g} s are asked for"),
+        Clause("(3)", plateau >= STATIONARY, f"strong for {plateau:g} s, {STATIONARY:g} s are required"),
         Clause("(4)a", len(motions) >= FEWEST, few),
     ]
     if elastic is None:
@@ -52,23 +52,23 @@ def clauses(
     compared = fit(motions, elastic, first_period)
     low, high = compared.periods[[0, -1]].tolist()
     least = f"the mean is {compared.least_mean:.3f} of the spectrum at least, {low:.3g} to {high:.3g} s, "
-    least += f"{LEAST_MEAN:.2f} are asked for"
+    least += f"{LEAST_MEAN:.2f} are required"
     return [*found, _peaks(compared.mean_peak), Clause("(4)c", compared.least_mean >= LEAST_MEAN, least)]
 
 
 def _peaks(mean: float) -> Clause:
-    return Clause("(4)b", mean >= 1.0 - 1e-9, f"mean peak {mean:.3f} of ag S, 1 is asked for")
+    return Clause("(4)b", mean >= 1.0 - 1e-9, f"mean peak {mean:.3f} of ag S, 1 is required")
 
 
 def meets(found: Sequence[Clause]) -> bool | None:
-    """Whether a suite meets all of them; None where that cannot be judged."""
+    """Test whether a suite meets all clauses; None where that cannot be judged."""
     if any(clause.met is False for clause in found):
         return False
     return None if any(clause.met is None for clause in found) else True
 
 
 def verdict(found: Sequence[Clause]) -> str:
-    """In words: the clauses that are met, or what the others ask for."""
+    """Describe the clauses that are met, or what the others require."""
     numbers = ", ".join(clause.number for clause in found)
     if meets(found):
         return f"meets EN 1998-1 3.2.3.1.2 {numbers}"

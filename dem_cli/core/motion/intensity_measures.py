@@ -1,4 +1,4 @@
-"""Intensity measures of a ground motion: how strong it is, how long, and how well it fits a spectrum."""
+"""Intensity measures of a ground motion: strength, duration, and fit to a response spectrum."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class SpectrumFit(NamedTuple):
 
 
 def strength(motion: Motion) -> IntensityMeasures:
-    """Measures of a motion, from samples as close as it is made of."""
+    """Compute the intensity measures of a motion, from samples as close as it is made of."""
     times = motion.times(MOST_SAMPLES)
     acceleration = motion.acceleration(times)
     growth = np.diff(times) * 0.5 * (acceleration[1:] ** 2 + acceleration[:-1] ** 2)
@@ -65,7 +65,7 @@ def compared_periods(first_period: float | None = None) -> np.ndarray:
 
 
 def fit(motions: Sequence[Motion], target: TargetSpectrum, first_period: float | None = None) -> SpectrumFit:
-    """Compare a suite with its target."""
+    """Compare a suite of motions with its target spectrum."""
     periods = compared_periods(first_period)
     ratios = spectra(motions, periods, target.damping) / target(periods)
     mean_peak = float(np.mean([motion.peak for motion in motions])) / target.ground
@@ -75,7 +75,7 @@ def fit(motions: Sequence[Motion], target: TargetSpectrum, first_period: float |
 
 
 def spectra(motions: Sequence[Motion], periods: np.ndarray, damping: float) -> np.ndarray:
-    """Pseudo-acceleration of each motion [m/s2], (n_motions, n_periods)."""
+    """Compute the pseudo-acceleration of each motion [m/s2], (n_motions, n_periods)."""
     found = []
     for motion in motions:
         times = motion.times(MOST_SAMPLES)

@@ -21,13 +21,13 @@ class Waveform(Protocol):
     step: float  # time step that shows it well [s]
 
     def acceleration(self, t: np.ndarray) -> np.ndarray:
-        """[m/s2] at times t [s]."""
+        """Acceleration [m/s2] at times t [s]."""
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
-        """[m/s] at times t [s]."""
+        """Velocity [m/s] at times t [s]."""
 
     def displacement(self, t: np.ndarray) -> np.ndarray:
-        """[m] at times t [s]."""
+        """Displacement [m] at times t [s]."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Motion:
         return self.factor * (self.shape.displacement(inside) + coasting)
 
     def scaled(self, factor: float) -> Motion:
-        """The same motion, `factor` times as strong."""
+        """Scale the motion by a factor on its strength."""
         return replace(self, factor=self.factor * factor)
 
     def times(self, most: int = 1_000_000) -> np.ndarray:
@@ -109,7 +109,7 @@ class Motion:
 
 
 def moving_at_the_end(motion: Motion) -> str:
-    """A warning about a motion that leaves the base moving, or nothing."""
+    """Return the warning about a motion that leaves the base moving; empty where it ends at rest."""
     velocities = motion.velocity(motion.times(20_000))
     largest, last = float(np.abs(velocities).max()), motion.end_velocity
     if abs(last) <= ENDS_MOVING * largest:

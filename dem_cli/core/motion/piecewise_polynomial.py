@@ -22,7 +22,7 @@ class PiecewisePolynomial:
         self.c, self.x = c, x
 
     def __call__(self, t: np.ndarray | float) -> np.ndarray:
-        """Values at times t [s], of any shape; before the first sample and behind the last by the nearest piece."""
+        """Evaluate at times t [s], of any shape; before the first sample and behind the last by the nearest piece."""
         times = np.asarray(t, float)
         flat = times.ravel()
         parts = [self._values(flat[first : first + AT_ONCE]) for first in range(0, len(flat), AT_ONCE)]
@@ -38,7 +38,7 @@ class PiecewisePolynomial:
         return values
 
     def antiderivative(self, order: int = 1) -> PiecewisePolynomial:
-        """The integral from the first sample on, taken once or twice."""
+        """Integrate from the first sample on, once or twice."""
         k, pieces = self.c.shape
         raised = np.zeros((k + order, pieces))
         for power, coefficients in enumerate(self.c[::-1]):

@@ -37,17 +37,17 @@ class SineWave:
         self.peak = self._peak()
 
     def acceleration(self, t: np.ndarray) -> np.ndarray:
-        """[m/s2] at times t [s]."""
+        """Acceleration [m/s2] at times t [s]."""
         k = self._piece(t)
         return self.amplitude * (self.levels[k] + self.slopes[k] * t) * np.sin(self.omega * t + self.phase)
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
-        """[m/s] at times t [s]."""
+        """Velocity [m/s] at times t [s]."""
         k = self._piece(t)
         return self._velocities[k] + self._first(t, k) - self._first(self.knots[k], k)
 
     def displacement(self, t: np.ndarray) -> np.ndarray:
-        """[m] at times t [s]."""
+        """Displacement [m] at times t [s]."""
         k = self._piece(t)
         knot = self.knots[k]
         drift = (self._velocities[k] - self._first(knot, k)) * (t - knot)
@@ -102,16 +102,16 @@ class RickerWavelet:
         self.peak = abs(amplitude)
 
     def acceleration(self, t: np.ndarray) -> np.ndarray:
-        """[m/s2] at times t [s]."""
+        """Acceleration [m/s2] at times t [s]."""
         x = self.rate * (t - self.middle)
         return self.amplitude * (1.0 - 2.0 * x * x) * functions.exp(-x * x)
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
-        """[m/s] at times t [s]."""
+        """Velocity [m/s] at times t [s]."""
         return self._velocity(t) - self._velocity(0.0)
 
     def displacement(self, t: np.ndarray) -> np.ndarray:
-        """[m] at times t [s]."""
+        """Displacement [m] at times t [s]."""
         return self._displacement(t) - self._displacement(0.0) - self._velocity(0.0) * t
 
     def _velocity(self, t: np.ndarray | float) -> np.ndarray:
@@ -137,16 +137,16 @@ class RectangularPulses:
         self._displacements = np.concatenate(([0.0], np.cumsum(travelled)[:-1]))
 
     def acceleration(self, t: np.ndarray) -> np.ndarray:
-        """[m/s2] at times t [s]."""
+        """Acceleration [m/s2] at times t [s]."""
         return self.values[self._piece(t)]
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
-        """[m/s] at times t [s]."""
+        """Velocity [m/s] at times t [s]."""
         k = self._piece(t)
         return self._velocities[k] + self.values[k] * (t - self.knots[k])
 
     def displacement(self, t: np.ndarray) -> np.ndarray:
-        """[m] at times t [s]."""
+        """Displacement [m] at times t [s]."""
         k = self._piece(t)
         since = t - self.knots[k]
         return self._displacements[k] + since * (self._velocities[k] + 0.5 * self.values[k] * since)
@@ -156,7 +156,8 @@ class RectangularPulses:
 
 
 def impulse(amplitude: float, duration: float, rebound: float = 0.0) -> RectangularPulses:
-    """`amplitude` for `duration`, then −rebound · amplitude until the base stands still again (rebound > 0).
+    """Build an impulse: `amplitude` for `duration`, then −rebound · amplitude until the base stands still again
+    (rebound > 0).
 
     With rebound 0.5 the base impulse of Dimitri, De Lorenzis and Zavarise (2011): +a for t, −a/2 for 2 t.
     """

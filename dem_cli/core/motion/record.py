@@ -27,22 +27,22 @@ class Accelerogram:
         self.peak = largest(acceleration)
 
     def acceleration(self, t: np.ndarray) -> np.ndarray:
-        """[m/s2] at times t [s]."""
+        """Acceleration [m/s2] at times t [s]."""
         return self.polynomials[0](t)
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
-        """[m/s] at times t [s]."""
+        """Velocity [m/s] at times t [s]."""
         return self.polynomials[1](t)
 
     def displacement(self, t: np.ndarray) -> np.ndarray:
-        """[m] at times t [s]."""
+        """Displacement [m] at times t [s]."""
         return self.polynomials[2](t)
 
 
 def record(
     times: np.ndarray, values: np.ndarray, quantity: str = "acceleration", baseline: int | None = None
 ) -> Accelerogram:
-    """A record from samples at increasing times, even or not; the first time becomes 0.
+    """Build an accelerogram from samples at increasing times, even or not; the first time becomes 0.
 
     acceleration  linear between the samples
     velocity      a cubic spline (not-a-knot) through the samples, less the first of them: acceleration is quadratic
@@ -61,7 +61,7 @@ def record(
 
 
 def _through(times: np.ndarray, values: np.ndarray, quantity: str) -> PiecewisePolynomial:
-    """Acceleration of a spline through velocities or displacements."""
+    """Compute the acceleration of a spline through velocities or displacements."""
     from scipy.interpolate import CubicSpline  # 0.25 s
 
     if quantity == "velocity":
@@ -72,7 +72,8 @@ def _through(times: np.ndarray, values: np.ndarray, quantity: str) -> PiecewiseP
 
 
 def corrected(acceleration: PiecewisePolynomial, order: int) -> PiecewisePolynomial:
-    """`acceleration` less the polynomial of this order whose integral comes closest to the velocity.
+    """Correct the baseline: `acceleration` less the polynomial of this order whose integral comes closest to the
+    velocity.
 
     Closest in the sense of least squares over the samples, each with the time around it as its weight. The integral
     is 0 at the start, so that the corrected velocity starts at 0 too; it ends near 0, not at it. Where it would end
@@ -107,7 +108,7 @@ def corrected(acceleration: PiecewisePolynomial, order: int) -> PiecewisePolynom
 
 
 def largest(polynomial: PiecewisePolynomial) -> float:
-    """Largest absolute value of a piecewise polynomial."""
+    """Find the largest absolute value of a piecewise polynomial."""
     values = [*polynomial.c[-1], float(polynomial(polynomial.x[-1]))]
     if polynomial.c.shape[0] > 2:  # higher than linear: crests between the samples
         from scipy.interpolate import PPoly

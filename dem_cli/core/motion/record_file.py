@@ -1,4 +1,4 @@
-"""Accelerogram files: columns of time and value (CSV and its kin), and the AT2, VT2, DT2 files of PEER.
+"""Accelerogram files: columns of time and value (CSV and similar text), and the AT2, VT2, DT2 files of PEER.
 
 Errors are RecordError: one message with the file, the line and what is wrong.
 """
@@ -32,7 +32,7 @@ ALONG = "all"  # `column` of values that go on from line to line
 
 
 class RecordSamples(NamedTuple):
-    """Samples as they stand in a file."""
+    """Samples of an accelerogram as they stand in a file."""
 
     times: np.ndarray  # [s], (n,)
     values: np.ndarray  # in `unit`, (n,)
@@ -43,7 +43,7 @@ class RecordSamples(NamedTuple):
 def read_series(
     path: Path, step: float | None = None, column: int | str | None = None, uneven: bool = False
 ) -> RecordSamples:
-    """The samples in a file. Raises RecordError.
+    """Read the samples of an accelerogram file. Raises RecordError.
 
     step    time step of a file that has values only [s]
     column  number of the column with the values, the first one is 1; may be left out when there is no choice; "all":
@@ -87,7 +87,7 @@ def _check_sizes(name: str, times: np.ndarray, values: np.ndarray) -> None:
 
 
 def said_unit(header: list[str]) -> tuple[str | None, str | None]:
-    """Quantity and unit of the values by the line above them, where it names one in brackets; None, None: no, or two.
+    """Read quantity and unit of the values from the line above them, in brackets; None, None: no unit, or two.
 
     Lengths are not looked for: they may be those of anything.
     """
@@ -100,7 +100,7 @@ def said_unit(header: list[str]) -> tuple[str | None, str | None]:
 
 
 def _rows(name: str, lines: list[str], along: bool) -> tuple[list[list[float]], list[int]]:
-    """The numbers in each line that has any, and the numbers of these lines; along: lines may differ in length."""
+    """Read the numbers of each line that has any, with the line numbers; along: lines may differ in length."""
     rows: list[list[float]] = []
     numbers: list[int] = []
     for at, line in enumerate(lines, 1):
@@ -120,12 +120,13 @@ def _rows(name: str, lines: list[str], along: bool) -> tuple[list[list[float]], 
 
 
 def _is_header(fields: list[str]) -> bool:
-    """Whether a line before any numbers has none, or begins with a word, such as `Station 12`."""
+    """Test whether a line before any numbers has none, or begins with a word, such as `Station 12`."""
     return not any(map(is_number, fields)) or (not is_number(fields[0]) and bool(WORD.match(fields[0])))
 
 
 def _finite(fields: list[str], place: str) -> list[float]:
-    """The numbers in a line. Raises RecordError, which says where: FILE:LINE."""
+    """Parse the numbers of a line; raises RecordError for one that is not a finite number. Raises RecordError,
+    which says where: FILE:LINE."""
     row = []
     for field in fields:
         try:
@@ -138,7 +139,7 @@ def _finite(fields: list[str], place: str) -> list[float]:
 
 
 def _fields(line: str) -> list[str]:
-    """What stands between the separators of a line: ';', tab, ',' or blanks; beside all but ',' ',' is decimal."""
+    """Split a line at its separators: ';', tab, ',' or blanks; beside all but ',' a comma is decimal."""
     line = line.partition("#")[0].strip()
     if ";" in line or "\t" in line:
         fields = [field.replace(",", ".") for field in re.split(r"[;\t]", line)]
@@ -205,7 +206,7 @@ def _check_times(name: str, times: np.ndarray, numbers: list[int], uneven: bool)
 
 
 def _peer(name: str, lines: list[str]) -> RecordSamples:
-    """A file of the PEER strong-motion database: header with NPTS and DT, then values, several in a line."""
+    """Read a file of the PEER strong-motion database: header with NPTS and DT, then values, several in a line."""
     at = next(i for i, line in enumerate(lines[:8]) if PEER_COUNT.search(line) or PEER_OLD.search(line))
     count, step = _peer_size(lines[at], f"{name}:{at + 1}")
     values = by_width(lines[at + 1 :], count)  # columns of one width are certain even where they touch
@@ -222,7 +223,7 @@ def _peer(name: str, lines: list[str]) -> RecordSamples:
 
 
 def _peer_size(line: str, place: str) -> tuple[int, float]:
-    """Number of values and time step [s] as a header says. Raises RecordError."""
+    """Read the number of values and the time step [s] from a header. Raises RecordError."""
     old = PEER_OLD.search(line)
     count_found, step_found = PEER_COUNT.search(line), PEER_STEP.search(line)
     if old:
@@ -237,7 +238,7 @@ def _peer_size(line: str, place: str) -> tuple[int, float]:
 
 
 def _peer_quantity(header: str) -> tuple[str | None, str | None]:
-    """Quantity and unit by the line `ACCELERATION TIME SERIES IN UNITS OF G`."""
+    """Read quantity and unit from the line `ACCELERATION TIME SERIES IN UNITS OF G`."""
     said = re.search(r"(ACCELERATION|VELOCITY|DISPLACEMENT)[^\n]*?UNITS?\s+OF\s+(\S+)", header)
     if not said:
         return None, None

@@ -24,11 +24,11 @@ END_OF_FILE = b"\x1a"  # of DOS
 
 
 class RecordError(ValueError):
-    """A record that cannot be used; the message says which file, where in it, and why."""
+    """Accelerogram that cannot be used; the message says which file, where in it, and why."""
 
 
 def read_text(path: Path) -> str:
-    """What stands in a text file: UTF-8, UTF-16 with a mark, else Windows' Latin-1. Raises RecordError."""
+    """Read a text file: UTF-8, UTF-16 with a mark, else Windows' Latin-1. Raises RecordError."""
     try:
         raw = read_bounded(path, RECORD_BYTES).rstrip(END_OF_FILE)
     except UnreadableInput as error:
@@ -47,7 +47,7 @@ def read_text(path: Path) -> str:
 
 
 def number(field: str) -> float:
-    """The number that a field is; may be nan or infinite. Raises ValueError."""
+    """Parse a field as a number; may be nan or infinite. Raises ValueError."""
     found = NUMBER.fullmatch(field) or LONG_EXPONENT.fullmatch(field)
     if found:
         return float(f"{found[1]}e{found[2] or 0}")
@@ -57,7 +57,7 @@ def number(field: str) -> float:
 
 
 def is_number(field: str) -> bool:
-    """Whether a field is a number."""
+    """Test whether a field is a number."""
     try:
         number(field)
     except ValueError:
@@ -66,7 +66,7 @@ def is_number(field: str) -> bool:
 
 
 def apart(field: str) -> list[str]:
-    """`-.1234E-02-.5678E-02` as two numbers: those that touch at a sign, each with a point; otherwise the field."""
+    """Split numbers that touch at a sign, each with a point, such as `-.1234E-02-.5678E-02`; otherwise the field."""
     if is_number(field):
         return [field]
     parts = TOUCHING.findall(field)
@@ -75,7 +75,7 @@ def apart(field: str) -> list[str]:
 
 
 def by_width(lines: Sequence[str], count: int) -> list[float] | None:
-    """The values in columns of one width, which may touch, or None where these lines are no such columns.
+    """Read values in columns of one width, which may touch; None where these lines are no such columns.
 
     As Fortran writes them, such as (5E15.7) or (8F10.6): lines of one length, all columns equally wide, numbers at
     their right end with equally many decimals, `count` of them; and only one width does all this.
@@ -86,7 +86,7 @@ def by_width(lines: Sequence[str], count: int) -> list[float] | None:
 
 
 def _widths(lines: Sequence[str], count: int) -> list[int]:
-    """Widths of columns that give so many values: all lines but the last one are full."""
+    """Find widths of columns that give so many values: all lines but the last one are full."""
     if not lines or any(len(line) != len(lines[0]) for line in lines[:-1]) or len(lines[-1]) > len(lines[0]):
         return []
     length = len(lines[0])
@@ -95,7 +95,7 @@ def _widths(lines: Sequence[str], count: int) -> list[int]:
 
 
 def _cut(lines: Sequence[str], width: int) -> list[float] | None:
-    """The values of columns so wide; None where one is not a number at the right end, or has other decimals."""
+    """Read values in columns of one width; None where one is not a number at the right end, or has other decimals."""
     fields = [line[at : at + width] for line in lines for at in range(0, len(line), width)]
     decimals = {len(point[1]) for field in fields if (point := DECIMALS.search(field))}
     right = all(len(field) == width and not field[-1].isspace() for field in fields)

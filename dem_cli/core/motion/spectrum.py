@@ -39,14 +39,15 @@ class OscillatorFilter(NamedTuple):
 
 
 def periods(shortest: float = 0.02, longest: float = 4.0, count: int = 120) -> np.ndarray:
-    """Periods of a picture [s], evenly spread over the logarithm, (count,)."""
+    """Choose periods for a picture [s], evenly spread over the logarithm, (count,)."""
     return functions.geometric(shortest, longest, count)
 
 
 def response_spectrum(
     accelerations: np.ndarray, step: float, periods: np.ndarray, damping: float = 0.05, points: int = SAMPLES_PER_PERIOD
 ) -> ResponseSpectrum:
-    """Spectrum of one or several records: while they last, and in the free vibration after them.
+    """Compute the response spectrum of one or several records: while they last, and in the free vibration after
+    them.
 
     accelerations  of the base [m/s2], (..., n), linear between samples `step` [s] apart; oscillators start at rest
     periods        > 0 [s], (n_periods,)
@@ -80,7 +81,7 @@ def _peaks(
 
 
 def pseudo_accelerations(accelerations: np.ndarray, filters: list[OscillatorFilter], omegas: np.ndarray) -> np.ndarray:
-    """PSA [m/s2] at the samples' own step, for loops that ask again and again, (..., n_periods).
+    """Compute PSA [m/s2] at the samples' own step, for loops that ask again and again, (..., n_periods).
 
     All filters go through the samples together; scipy.signal, for one after the other, takes half a second to load.
     """
@@ -98,7 +99,7 @@ def pseudo_accelerations(accelerations: np.ndarray, filters: list[OscillatorFilt
 
 
 def oscillator(omega: float, damping: float, step: float) -> OscillatorFilter:
-    """The exact recursion of an oscillator under an acceleration that is linear over each step.
+    """Compute the exact recursion of an oscillator under an acceleration that is linear over each step.
 
     u'' + 2ζω u' + ω² u = −a. Both components of the state obey y(i+1) − tr y(i) + det y(i−1) = Σ b a with the same
     trace and determinant of A (Cayley–Hamilton).
@@ -116,7 +117,8 @@ def oscillator(omega: float, damping: float, step: float) -> OscillatorFilter:
 
 
 def recursion(omega: float, damping: float, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """x(i+1) = A x(i) + now a(i) + then a(i+1), x = (u, u'): A (2, 2), now (2,), then (2,).
+    """Compute the step matrices of x(i+1) = A x(i) + now a(i) + then a(i+1), x = (u, u'): A (2, 2), now (2,), then
+    (2,).
 
     From one exponential of the state (ω² u, ω u', a, change of a over the step), which has none of the cancellation
     of the closed formulas at small ω · step.
@@ -133,7 +135,7 @@ def recursion(omega: float, damping: float, step: float) -> tuple[np.ndarray, np
 
 
 def exponential(matrix: np.ndarray) -> np.ndarray:
-    """exp of a small matrix (n, n) by its series, halved until that converges fast.
+    """Compute exp of a small matrix (n, n) by its series, halved until that converges fast.
 
     SciPy's expm starts threads, even for a 4 × 4 matrix: a hundred times slower where other work is going on.
     """
@@ -149,7 +151,7 @@ def exponential(matrix: np.ndarray) -> np.ndarray:
 
 
 def responses(accelerations: np.ndarray, one: OscillatorFilter) -> tuple[np.ndarray, np.ndarray]:
-    """Relative displacement and velocity of an oscillator at the samples, like `accelerations` (..., n)."""
+    """Compute relative displacement and velocity of an oscillator at the samples, like `accelerations` (..., n)."""
     from scipy.signal import lfilter
 
     first = accelerations[..., :1]
@@ -159,7 +161,8 @@ def responses(accelerations: np.ndarray, one: OscillatorFilter) -> tuple[np.ndar
 
 
 def free_vibration(u: np.ndarray, v: np.ndarray, omega: float, damping: float) -> tuple[np.ndarray, np.ndarray]:
-    """Displacement and velocity over the period after a state (..., 1), without acceleration, (..., POINTS + 1)."""
+    """Compute displacement and velocity over the period after a state (..., 1), without acceleration, (..., POINTS
+    + 1)."""
     damped, rate = omega * np.sqrt(1.0 - damping * damping), damping * omega
     times = np.linspace(0.0, 2.0 * np.pi / omega, SAMPLES_PER_PERIOD + 1)
     decay, cosine, sine = functions.exp(-rate * times), np.cos(damped * times), np.sin(damped * times)
@@ -170,7 +173,7 @@ def free_vibration(u: np.ndarray, v: np.ndarray, omega: float, damping: float) -
 
 
 def subdivided(records: np.ndarray, division: int) -> np.ndarray:
-    """Each step in `division` parts, linear between the samples."""
+    """Divide each time step into `division` parts, linear between the samples."""
     n = records.shape[-1]
     shares = np.arange(division) / division
     parts = records[..., :-1, None] + shares * np.diff(records)[..., None]
@@ -178,7 +181,7 @@ def subdivided(records: np.ndarray, division: int) -> np.ndarray:
 
 
 def crest(histories: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-    """Largest absolute value of each, also between samples: of the cubic with the slopes given there.
+    """Find the largest absolute value of each, also between samples: of the cubic with the slopes given there.
 
     histories, slopes per step (..., n); result (...,). The error is of fourth order in the step.
     """
@@ -196,7 +199,8 @@ def crest(histories: np.ndarray, slopes: np.ndarray) -> np.ndarray:
 
 
 def peak(histories: np.ndarray) -> np.ndarray:
-    """Largest absolute value of each, the crest of the parabola through its largest sample and the neighbours.
+    """Find the largest absolute value of each, the crest of the parabola through its largest sample and the
+    neighbours.
 
     histories (..., n), result (...,).
     """

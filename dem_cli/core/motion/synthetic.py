@@ -31,7 +31,7 @@ END_LEVEL = 0.05  # of the envelope at the end of the decay
 
 
 class ArtificialSuite(NamedTuple):
-    """What a suite of artificial accelerograms is to be like."""
+    """Parameters of a suite of artificial accelerograms."""
 
     target: TargetSpectrum  # that their response spectra meet
     duration: float = 20.0  # of each [s]
@@ -43,7 +43,7 @@ class ArtificialSuite(NamedTuple):
 
 
 def suite(asked: ArtificialSuite, seed: int, stream: int = 0) -> list[Accelerogram]:
-    """`n_records` records; record i depends on (seed, stream, i) and on nothing else that is random."""
+    """Generate `n_records` records; record i depends on (seed, stream, i) and on nothing else that is random."""
     count = round(asked.duration / asked.time_step)
     times = asked.duration / count * np.arange(count + 1)
     histories = accelerograms(
@@ -54,7 +54,8 @@ def suite(asked: ArtificialSuite, seed: int, stream: int = 0) -> list[Accelerogr
 
 
 def envelope(times: np.ndarray, rise: float, plateau: float) -> np.ndarray:
-    """(t/rise)² up to `rise`, 1 for `plateau`, then, if time is left, an exponential down to 0.05 at its end, (n,)."""
+    """Compute the envelope: (t/rise)² up to `rise`, 1 for `plateau`, then, if time is left, an exponential down to
+    0.05, (n,)."""
     end = rise + plateau
     decay = -functions.log(END_LEVEL) / max(times[-1] - end, 1e-9)
     return np.where(
@@ -63,7 +64,8 @@ def envelope(times: np.ndarray, rise: float, plateau: float) -> np.ndarray:
 
 
 def power_spectrum(target: TargetSpectrum, omegas: np.ndarray) -> np.ndarray:
-    """One-sided power spectrum G [m2/s3] of a stationary motion whose response spectrum is the target, (n,).
+    """Compute the one-sided power spectrum G [m2/s3] of a stationary motion whose response spectrum is the target,
+    (n,).
 
     G(ω) = [Sa²/r² − ∫₀^ω G dω] / [ω (π/(4ξ') − 1)], ξ' = ξ/(1 − exp(−2ξωs)), s = 10 s, r the peak factor with
     probability p = 0.5 (Vanmarcke 1976). `omegas` even and increasing [rad/s].
@@ -89,7 +91,7 @@ def power_spectrum(target: TargetSpectrum, omegas: np.ndarray) -> np.ndarray:
 def accelerograms(
     target: TargetSpectrum, times: np.ndarray, shape: np.ndarray, iterations: int, generators: list[np.random.Generator]
 ) -> np.ndarray:
-    """One history per generator [m/s2], (count, n), each from rest to rest where it started.
+    """Generate one history per generator [m/s2], (count, n), each from rest to rest where it started.
 
     Sines with the power of the target and random phases, times the envelope `shape` (n,). Then `iterations` times
     every amplitude is multiplied by the target over the spectrum reached at its frequency; the best of all is kept,
@@ -133,8 +135,9 @@ def _sum_of_sines(coefficients: np.ndarray, orders: np.ndarray, n: int) -> np.nd
 
 
 def _at_rest(times: np.ndarray, shape: np.ndarray) -> Return:
-    """A function that takes from histories the two multiples of the envelope, plain and times t, that leave no
-    velocity and no displacement at the end (of an acceleration that is linear between samples)."""
+    """Return a function that corrects histories so that no velocity and no displacement is left at the end. It
+    takes from them two multiples of the envelope, plain and times t (of an acceleration that is linear between
+    samples)."""
     step = times[1] - times[0]
     to_velocity = np.full(len(times), step)
     to_velocity[[0, -1]] *= 0.5
@@ -155,7 +158,7 @@ def _at_rest(times: np.ndarray, shape: np.ndarray) -> Return:
 
 
 def _raised(history: np.ndarray, ground: float, times: np.ndarray, rest: Return) -> np.ndarray:
-    """The history (n,) with a Ricker wavelet on its largest sample, so that this becomes `ground` [m/s2].
+    """Add a Ricker wavelet to the largest sample of a history (n,), so that this becomes `ground` [m/s2].
 
     The wavelet is so short that it hardly moves an oscillator of longer period.
     """

@@ -1,4 +1,4 @@
-"""Units in which records come: for each quantity the factor to SI."""
+"""Units of acceleration, velocity and displacement in record files: for each quantity the factor to SI."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Records of a run that solvers hand out, what they are asked for, and the ports through which they tell and stop."""
+"""Records of a run: results of the solvers, their requests, and the ports through which they report and stop."""

@@ -29,7 +29,7 @@ FRAME_ARRAYS = ("positions", "orientations", "velocities")  # fields of Frame th
 
 
 class ContactRecord(NamedTuple):
-    """All contact points at one instant. A joint owns several points (2D: its two ends)."""
+    """Contact points of one instant: places, forces and states. A joint owns several points (2D: its two ends)."""
 
     joint: np.ndarray  # joint that owns the point, (n,) int64; joints are renumbered at each detection
     blocks: np.ndarray  # the two blocks a, b, (n, 2) int64
@@ -64,7 +64,7 @@ class LinkPlaces(NamedTuple):
     arms: np.ndarray  # from its centroid, undeformed; of no block from the origin [m], (n_points, d)
 
     def at(self, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
-        """Where the points are when the blocks are there [m], (n_points, d); arguments as in Frame."""
+        """Compute the places of the points where the blocks are now [m], (n_points, d); arguments as in Frame."""
         held, found = self.blocks >= 0, self.arms.copy()
         of = self.blocks[held]
         found[held] = positions[of] + turning(orientations[of])(self.arms[held])
@@ -112,7 +112,7 @@ class JointPlaces(NamedTuple):
 
 
 class JointStates(NamedTuple):
-    """These joints at one instant, (n,) each; across and along are said by a, with which a joint turns."""
+    """States of joints at one instant, (n,) each; across and along are said by a, with which a joint turns."""
 
     # In the plane slip, shear stress and eccentricity are along the normal turned by +90°; in space they are lengths.
     opening: np.ndarray  # mean distance across it, positive open [m]
@@ -125,7 +125,7 @@ class JointStates(NamedTuple):
 
 
 class Frame(NamedTuple):
-    """The structure at one instant."""
+    """Frame: the structure at one instant."""
 
     stage: str  # one of STAGES; of limit analysis and of a mode, positions are moved a little along it
     step: int  # solver steps so far
@@ -142,7 +142,7 @@ class Frame(NamedTuple):
     links: LinkRecord | None = None  # ties and bars; None: there are none
 
     def moved(self, motion: np.ndarray) -> Frame:
-        """The same with blocks moved, and turned along the axes of the world [m, rad], (n_blocks, n_dof)."""
+        """Move and turn the blocks along the axes of the world [m, rad], (n_blocks, n_dof)."""
         d = self.positions.shape[1]
         turned = turned_further(self.orientations, motion[:, d:])
         return self._replace(positions=self.positions + motion[:, :d], orientations=turned)
@@ -167,18 +167,18 @@ class FrameStack(NamedTuple):
         return np.array([len(frame.contacts.joint) for frame in self.frames], np.int64)
 
     def own_contacts(self) -> ContactRecord:
-        """All contact points, with the numbers that blocks have in the structure."""
+        """Return all contact points, with the numbers that blocks have in the structure."""
         return self.contacts._replace(blocks=self.contacts.blocks % (len(self.positions) // len(self.frames)))
 
     def numbers(self, name: str, dtype: type = np.float64) -> np.ndarray:
-        """A number of each frame by the name of its field, (n_frames,); the stage by its place in STAGES."""
+        """Return one field of every frame by its name, (n_frames,); the stage by its place in STAGES."""
         if name == "stage":
             return np.array([STAGES.index(frame.stage) for frame in self.frames], dtype)
         return np.array([getattr(frame, name) for frame in self.frames], dtype)
 
 
 def stacked(frames: Sequence[Frame]) -> FrameStack:
-    """Frames of one structure, at least one, as a stack."""
+    """Stack frames of one structure, at least one."""
     n_blocks = len(frames[0].positions)
     positions, orientations, velocities = (
         np.concatenate([getattr(frame, name) for frame in frames]) for name in FRAME_ARRAYS

@@ -1,4 +1,4 @@
-"""Rows of a history, samples of the monitors, the energy ledger and the rows of many runs, as solvers hand them out."""
+"""Rows of a history, samples of monitors, the energy balance and the rows of many runs, as solvers return them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ MONITOR_UNITS |= {f"absolute {name}": MONITOR_UNITS[name] for name in ("displace
 
 
 class Energy(NamedTuple):
-    """The energy ledger [J], since the start of the run; external: applied loads without gravity."""
+    """Energy balance [J], since the start of the run; external: applied loads without gravity."""
 
     kinetic: float
     elastic: float
@@ -46,7 +46,7 @@ class Energy(NamedTuple):
 
 
 class HistoryRow(NamedTuple):
-    """One row of the history; rows are written in the order in which they come."""
+    """Row of the load history; rows are written in the order in which they come."""
 
     stage: str
     step: int
@@ -55,17 +55,17 @@ class HistoryRow(NamedTuple):
     unbalanced: float  # largest unbalanced force on a block over its own weight
     overlap: float  # largest overlap [m]
     energy: Energy
-    monitors: tuple[float, ...]  # in the order of the case's [[monitor]] tables
+    monitors: tuple[float, ...]  # in the order of SolverRequest.monitors
     time: float = 0.0  # since the start of a time history [s]
     live_displacement: float = 0.0  # of the live load along itself since it rested under dead loads [m], signed
 
 
 class Samples(NamedTuple):
-    """A stretch of the histories of a time history, at even intervals."""
+    """Samples of a stretch of a time history, at even intervals."""
 
     times: np.ndarray  # [s], (n,)
     base: np.ndarray  # acceleration, velocity and displacement of the base [m, s], (n, 3, d)
-    monitors: np.ndarray  # in the order of the case's [[monitor]] tables, (n, n_monitors)
+    monitors: np.ndarray  # in the order of SolverRequest.monitors, (n, n_monitors)
     # Highest value, its time [s], lowest, its time of each monitor at any step, (n_monitors, 4); (0, 4): of samples
     extremes: np.ndarray = NO_EXTREMES
     coda: bool = False  # whether the motion of the ground, or the time that a case asks for, was over
@@ -74,7 +74,7 @@ class Samples(NamedTuple):
 class RunRow(NamedTuple):
     """Outcome of one of many runs."""
 
-    structure: int  # 0: that of the case; others are slightly different
+    structure: int  # 0: the given one; others are slightly different
     record: str  # the ground motion
     intensity: float
     acceleration: float  # peak of the ground [m/s2]

@@ -1,4 +1,4 @@
-"""Likeness of a kept value to the one whose place it takes: the same kind, and arrays of the same shape."""
+"""Likeness of a stored value to the one that it replaces: the same kind, and arrays of the same shape."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _OF_JOINTS = frozenset((  # records whose arrays have rows of joints, points or 
 
 
 def alike(here: Any, kept: Any, rows: bool = False) -> bool:
-    """Whether a kept value may stand in the place of one that is there; None may have become anything.
+    """Test whether a stored value may replace the present one; None may have become anything.
 
     rows: arrays may have more or fewer of them.
     """

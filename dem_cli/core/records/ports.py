@@ -1,4 +1,4 @@
-"""Ports of a run: the observer to whom a solver reports, and the stages at which it may be kept for `--resume`.
+"""Ports of a run: the observer to which a solver reports, and the stages at which `--resume` can save it.
 
 Stages are pieces of work whose outcome is kept, and loops that may go on from the middle. A run is deterministic: begun
 again it goes the same way. So what is kept is small: of each finished stage what it returned and what it left of the
@@ -36,20 +36,21 @@ Given = ParamSpec("Given")
 
 
 class Stages:
-    """Stages of a run of which nothing is kept; all of them are done."""
+    """Stages of a run without checkpoints; all of them are computed."""
 
     before = 0.0  # s of work before this run, whose stages it goes on from
 
     def done(self, name: str, arguments: tuple[Any, ...], work: Callable[[], Found]) -> Found:
-        """What a stage gives: by work, or as it was kept."""
+        """Return the result of a stage: computed by `work`, or as it was stored."""
         return work()
 
     def resumed(self, loop: Any = None) -> bool:
-        """Whether the stage under way goes on from a checkpoint: then all it changes and its loop are as they were."""
+        """Test whether the current stage resumes from a checkpoint: then all it changes and its loop are as they
+        were."""
         return False
 
     def offer(self, loop: Any = None) -> None:
-        """The stage under way may go on from here; loop: an object with all that it needs besides what it changes."""
+        """Offer a checkpoint from which the current stage may resume; loop: an object with all else that it needs."""
 
     def __deepcopy__(self, known: dict[int, Any]) -> Stages:
         return self
@@ -59,7 +60,8 @@ NOTHING_KEPT = Stages()
 
 
 def stage(work: Callable[Given, Found]) -> Callable[Given, Found]:
-    """A function as a stage of the run of its first argument: a simulation, or what has one as `sim`."""
+    """Decorate a function as a stage of the run of its first argument: a simulation, or an object with one as
+    `sim`."""
 
     @wraps(work)
     def kept(*arguments: Given.args, **named: Given.kwargs) -> Found:
@@ -71,7 +73,7 @@ def stage(work: Callable[Given, Found]) -> Callable[Given, Found]:
 
 
 class Observer:
-    """Observer of a run: who a solver reports to. This one does nothing; all return at once and change no state.
+    """Observer of a run, to which a solver reports. This one does nothing; all return at once and change no state.
 
     stages  keeps the stages of the run for `--resume`
     """
@@ -79,19 +81,19 @@ class Observer:
     stages: Stages = NOTHING_KEPT
 
     def frame(self, frame: Frame) -> None:
-        """A snapshot to keep."""
+        """Receive a snapshot to store."""
 
     def row(self, row: HistoryRow) -> None:
-        """A row of the history to keep."""
+        """Receive a row of the history to store."""
 
     def samples(self, samples: Samples) -> None:
-        """A stretch of a time history to keep; follows the one before."""
+        """Receive a stretch of a time history to store; follows the one before."""
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
-        """Where the run stands; `fraction` of the stage that is done, None where nobody can tell."""
+        """Receive the progress of the run; `fraction` of the stage that is done, None where unknown."""
 
     def structure(self, model: Model) -> None:
-        """The structure that all frames show, where it is another one than that of the case; before any of them."""
+        """Receive the structure that all frames show, where it differs from the given one; before any of them."""
 
     def runs(self, rows: Sequence[RunRow]) -> None:
-        """All runs of an analysis that consists of many, at its end."""
+        """Receive all runs of an analysis that consists of many, at its end."""

@@ -1,4 +1,4 @@
-"""Requests: what the solvers are asked for, in numbers, names and arrays; no table of a case file is among them."""
+"""Requests to the solvers, in numbers, names and arrays; independent of the format of the input."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class JointRequest(NamedTuple):
 
 @dataclass(frozen=True)
 class AnalysisRequest:
-    """The numbers of an analysis: its kinematics, its limits, and which way it goes."""
+    """Request for an analysis: its kinematics, its limits, and its method."""
 
     kinematics: Literal["auto", "fixed", "large"]
     max_steps: int
@@ -43,7 +43,7 @@ class AnalysisRequest:
 
 @dataclass(frozen=True)
 class ShakingRequest(AnalysisRequest):
-    """The numbers of a time history; all times in seconds."""
+    """Request for a time history; all times in seconds."""
 
     margin: float = 0.25  # time step over the largest stable one [-]
     time_step: float | None = None  # [s]; None: by the margin
@@ -58,7 +58,7 @@ class ShakingRequest(AnalysisRequest):
 
 @dataclass(frozen=True)
 class RayleighRequest:
-    """Damping in proportion to mass and stiffness, c = a0 m + a1 k."""
+    """Request for Rayleigh damping in proportion to mass and stiffness, c = a0 m + a1 k."""
 
     ratio: float  # of critical [-]
     mass: float  # a0 [1/s]
@@ -67,7 +67,7 @@ class RayleighRequest:
 
 
 class MaxwellRequest(NamedTuple):
-    """A spring and a dashpot in series beside each spring of a joint."""
+    """Request for a Maxwell element: a spring and a dashpot in series beside each spring of a joint."""
 
     ratio: float  # damping ratio at its frequency [-]
     frequency: float  # where it damps most [Hz]
@@ -75,7 +75,7 @@ class MaxwellRequest(NamedTuple):
 
 @dataclass(frozen=True)
 class DampingRequest:
-    """What joints and blocks lose in a time history, beside friction; 0: nothing."""
+    """Request for damping of joints and blocks in a time history, beside friction; 0: none."""
 
     contact_fraction: float = 0.0  # dashpots of joints, of critical [-]
     restitution: float | Literal["housner"] | None = None  # angular velocity after over before a landing [-]
@@ -99,7 +99,7 @@ class InitialRequest:
 
 @dataclass(frozen=True)
 class MonitorRequest:
-    """A number followed through a run; one of link, selected, between, point and cut says where."""
+    """Request for a monitor, followed through a run; one of link, selected, between, point and cut says where."""
 
     quantity: str  # one of history_rows.MONITOR_UNITS
     component: str | None = None  # "x", "y" or "z"; None: the length of the vector
@@ -114,13 +114,13 @@ class MonitorRequest:
 
     @property
     def of_what_holds(self) -> bool:
-        """Whether it follows what fixed or restrained blocks are held by."""
+        """Test whether it follows reactions of fixed or restrained blocks."""
         return self.quantity in REACTIONS
 
 
 @dataclass(frozen=True)
 class SolverRequest:
-    """All that a run is asked for, beside its model and the motion of the ground."""
+    """Request for a run: all but its model and the ground motion."""
 
     joints: JointRequest
     analysis: AnalysisRequest
@@ -135,11 +135,11 @@ class SolverRequest:
 
     @property
     def in_seconds(self) -> bool:
-        """Whether it is a time history."""
+        """Test whether the analysis is a time history."""
         return isinstance(self.analysis, ShakingRequest)
 
     @property
     def shaking(self) -> ShakingRequest:
-        """The numbers of a time history, which it must be."""
+        """Return the request for a time history, which the analysis must be."""
         assert isinstance(self.analysis, ShakingRequest)
         return self.analysis

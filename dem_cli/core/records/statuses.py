@@ -1,4 +1,4 @@
-"""Statuses with which runs end, as summary.json has them."""
+"""Statuses with which runs end, as summary.json lists them."""
 
 FALLS = "does not stand under its dead loads"  # status of a run of any kind, of limit analysis too
 BUCKLED = "buckled under its dead loads"  # the same where forces balance, and the tangent stiffness is negative

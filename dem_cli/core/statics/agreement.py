@@ -1,4 +1,4 @@
-"""Agreement of methods: what other histories and the bound by limit analysis say beside a failure load.
+"""Agreement of methods: loads of other histories and the bound of limit analysis beside a failure load.
 
 Joints that slide without dilating leave the failure load to the history of loading: several loads may be true. Where
 the bracket holds the bound by limit analysis and nothing slides in any of its mechanisms, the load is the only one.
@@ -22,19 +22,19 @@ LIMIT = "limit analysis"  # where nothing slides in its mechanism: then rigid bl
 
 
 class History(NamedTuple):
-    """A way from gravity to failure, and the load that it ends at; multiplier as users know it."""
+    """Load history from gravity to failure, and the load at its end; multiplier as users know it."""
 
     method: str  # one of the names above; PATH as well where a search began at its end
     load: float
     finished: bool  # False: at least this load
 
     def summary(self) -> dict[str, Any]:
-        """What summary.json says of it."""
+        """Return the entries of summary.json about the history."""
         return self._asdict()
 
 
 def at_the_bound(search: FailureLoad, resolution: float) -> bool:
-    """Whether the load is the bound of a mechanism in which nothing slides, so that no second history is due."""
+    """Test whether the failure load is the bound of a mechanism without sliding, so that no second history is due."""
     bound, high, limits = search.bound, search.high, search.limits
     if bound is None or high is None or limits is None:
         return False
@@ -42,7 +42,8 @@ def at_the_bound(search: FailureLoad, resolution: float) -> bool:
 
 
 def unique(search: FailureLoad) -> bool:
-    """Whether no other load is possible: the bracket holds the bound, and nothing slides in any mechanism of it."""
+    """Test whether no other failure load is possible: the bracket contains the bound, and no mechanism of it
+    slides."""
     bound, low, high, limits = search.bound, search.low, search.high, search.limits
     if bound is None or low is None or high is None or limits is None or not search.found:
         return False
@@ -51,7 +52,7 @@ def unique(search: FailureLoad) -> bool:
 
 
 def histories(search: FailureLoad) -> list[History]:
-    """All ways to failure that were tried, that of the answer first."""
+    """List all histories to failure that were tried, that of the answer first."""
     way = {CURVE: FROM_CURVE, AT_PATH: PATH, IMPLICIT: IN_IMPLICIT_STEPS}.get(str(search.start.get("kind")), RAISED)
     found = [] if search.low is None else [History(way, search.low, search.found and not search.wide)]
     if way == IN_IMPLICIT_STEPS and search.raised is not None:
@@ -72,7 +73,8 @@ def histories(search: FailureLoad) -> list[History]:
 
 
 def load_range(search: FailureLoad, resolution: float) -> dict[str, Any] | None:
-    """The range of loads at which histories end, where they differ by more than the resolution; None: they agree."""
+    """Return the range of loads at which histories end, where they differ by more than the resolution; None: they
+    agree."""
     if not search.found or search.high is None:
         return None
     low, high = search.carried, search.high
@@ -110,7 +112,7 @@ _BY = {
 
 
 def _reached(search: FailureLoad) -> str:
-    """What the lower side of a wide bracket is, in words."""
+    """Describe the lower side of a wide bracket."""
     if search.start.get("kind") != AT_PATH:
         return "reached from gravity: at least"
     path = search.limits.path if search.limits is not None else None
@@ -120,7 +122,8 @@ def _reached(search: FailureLoad) -> str:
 
 
 def _alone_beyond_its_path(search: FailureLoad, resolution: float) -> bool:
-    """Whether the load was raised beyond the end of a path that was not followed to a plateau: one history alone."""
+    """Test whether the load was raised beyond the end of a path without a plateau, so that one history stands
+    alone."""
     path = search.limits.path if search.start.get("kind") == AT_PATH and search.limits is not None else None
     if path is None or path.load is None or path.finished or not search.found or search.wide:
         return False
@@ -128,13 +131,13 @@ def _alone_beyond_its_path(search: FailureLoad, resolution: float) -> bool:
 
 
 def percent(share: float) -> str:
-    """A share in per cent of two digits, in full where it is large: "0.18 %", "107 %", not "1.1e+02 %"."""
+    """Format a share in per cent with two digits, in full where it is large: "0.18 %", "107 %", not "1.1e+02 %"."""
     value = 100.0 * share
     return f"{value:.0f} %" if abs(value) >= 99.5 else f"{value:.2g} %"
 
 
 def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None) -> list[str]:
-    """Words of warning where histories differ, or where the bracket is wider than asked for."""
+    """Return the warnings where histories differ, or where the bracket is wider than the requested resolution."""
     said = []
     if spread is not None:
         share = (spread["highest"] - spread["lowest"]) / spread["highest"]

@@ -17,7 +17,7 @@ import numpy as np
 
 
 class Bilinear(NamedTuple):
-    """An elastic, perfectly plastic system; loads in the unit of the curve."""
+    """Elastic, perfectly plastic system; loads in the unit of the curve."""
 
     stiffness: float  # load per displacement [1/m]
     yield_load: float
@@ -28,7 +28,7 @@ class Bilinear(NamedTuple):
 
 
 def bilinear(displacements: np.ndarray, loads: np.ndarray, secant: float = 0.7, drop: float = 0.8) -> Bilinear | None:
-    """The system of a curve that starts at rest, (n,) each, displacements growing [m].
+    """Fit the bilinear system to a capacity curve that starts at rest, (n,) each, displacements growing [m].
 
     None where the curve carries nothing, or a load without end.
 
@@ -50,7 +50,7 @@ def bilinear(displacements: np.ndarray, loads: np.ndarray, secant: float = 0.7, 
 
 
 def _first(x: np.ndarray, y: np.ndarray, level: float, since: int, rises: bool) -> float:
-    """Where a curve first crosses a level after one of its points, between its points in proportion."""
+    """Find where a curve first crosses a level after one of its points, by linear interpolation."""
     beyond = y[since:] >= level if rises else y[since:] <= level
     k = since + int(np.argmax(beyond))
     if k == since or y[k] == y[k - 1]:
@@ -59,7 +59,7 @@ def _first(x: np.ndarray, y: np.ndarray, level: float, since: int, rises: bool) 
 
 
 def _area(x: np.ndarray, y: np.ndarray, end: float) -> float:
-    """Under a curve up to a place."""
+    """Compute the area under a curve up to a place."""
     inside = x < end
     places = np.append(x[inside], end)
     values = np.append(y[inside], np.interp(end, x, y))
@@ -67,7 +67,7 @@ def _area(x: np.ndarray, y: np.ndarray, end: float) -> float:
 
 
 def load_at(displacements: np.ndarray, loads: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Loads of a curve at displacements [m], (n,): between its points in proportion, not a number beyond its end.
+    """Interpolate the loads of a curve at displacements [m], (n,); not a number beyond its end.
 
     Of a curve that turns back, when it first gets there.
     """

@@ -1,4 +1,4 @@
-"""Compliance of a structure at rest: how far a small live load moves it, and in which units that counts as elastic."""
+"""Compliance of a structure at rest: displacement by a small live load, and the scale of elastic displacements."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ def check_moves(sim: Simulation, value: float) -> None:
 
 
 def compliance(sim: Simulation, budget: Budget | None = None) -> tuple[float, float]:
-    """q·u [J] and largest displacement [m] per unit of multiplier for small loads; the state is left as it was.
+    """Compute q·u [J] and the largest displacement [m] per unit of multiplier for small loads; the state is left
+    as it was.
 
     budget: what the steps are taken from. Where the structure has no equilibrium even at the smallest probe, that of
     the last probe is returned.
@@ -49,7 +50,7 @@ def compliance(sim: Simulation, budget: Budget | None = None) -> tuple[float, fl
 def _compliance_in_play(
     sim: Simulation, first: tuple[float, float], steps: int, budget: Budget | None
 ) -> tuple[float, float]:
-    """The same where any load may roll blocks over sides of a profile: the step of it that moves them least."""
+    """Compute the compliance where any load may roll blocks over a profile: the load step that moves them least."""
     load_search, relaxation = sim.settings.load_search, sim.settings.relaxation
     saved, found, load = sim.save(), first, load_search.probe_in_play
     for _ in range(load_search.doublings):

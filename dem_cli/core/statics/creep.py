@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class _Looks:
-    """How often was looked so far, how often in a row forces balanced, and the loads that were seen."""
+    """Progress of a creep: looks done, looks in balance in a row, and the loads that were seen."""
 
     def __init__(self) -> None:
         self.done, self.calm = 0, 0
@@ -20,7 +20,7 @@ class _Looks:
 
 @stage
 def creep_evenly(sim: Simulation, steps: int, looks: int) -> list[float]:
-    """A creep at the rate that is prescribed, of so many steps to each look: mean internal multiplier of each."""
+    """Creep at the prescribed rate, of so many steps to each look; returns the mean internal multiplier of each."""
     way = _Looks()
     sim.stages.resumed(way)
     while way.done < looks:
@@ -33,7 +33,7 @@ def creep_evenly(sim: Simulation, steps: int, looks: int) -> list[float]:
 
 @stage
 def creep_to_rest(sim: Simulation, looks: int) -> bool:
-    """The end of a creep, at rate zero; whether it ends in an equilibrium."""
+    """End a creep at rate zero; returns whether it comes to an equilibrium."""
     relaxation, way = sim.settings.relaxation, _Looks()
     sim.stages.resumed(way)
     while way.done < looks:

@@ -31,18 +31,18 @@ if TYPE_CHECKING:
     from dem_cli.core.engine.simulation import Simulation
     from dem_cli.core.engine.state import SavedState
 
-WATCHED = 8  # looks: where a displacement is held, every so many of them is told
+WATCHED = 8  # looks: where a displacement is held, every so many of them is reported
 
 
 class Followed(NamedTuple):
-    """A displacement that is controlled instead of that of the live load."""
+    """Displacement of a monitor that is controlled instead of that of the live load."""
 
     name: str  # of its monitor
     value: Callable[[], float]  # at this instant [m]
 
 
 class DisplacementControl:
-    """Moves a structure at rest to displacements of its live load, each a state at rest.
+    """Displacement control: moves a structure at rest to displacements of its live load, each a state at rest.
 
     first: increment that a ramp of the shortest length belongs to [m] of the live load; watch: called now and then;
     of: what displacements are counted of; None: of the live load itself.
@@ -78,19 +78,20 @@ class DisplacementControl:
 
     @property
     def displacement(self) -> float:
-        """Of the live load, or of the monitor, since gravity [m]."""
+        """Displacement of the live load, or of the monitor, since gravity [m]."""
         return self._place - self.origin
 
     @property
     def way(self) -> float:
-        """How far the structure has come since gravity: largest displacement of a block, or that of the monitor [m]."""
+        """Largest displacement of a block since gravity, or that of the monitor [m]."""
         if self.of is None:
             return measures.largest_displacement(self.sim) - self.largest
         return abs(self.displacement)
 
     @stage
     def go(self, distance: float) -> bool:
-        """On by a distance of the live load [m], to rest: in parts where that is not found. Whether all forces balance.
+        """Move on by a distance of the live load [m], to rest: in parts where that is not found. Whether all
+        forces balance.
 
         Raises SolverError where the live load does not move the monitor, or where the budget ends.
         """
@@ -106,7 +107,7 @@ class DisplacementControl:
         return rests
 
     def go_to(self, displacement: float, near: float) -> bool:
-        """To a displacement, of a monitor within `near` of it [m]. Whether all forces balance there."""
+        """Move to a displacement, of a monitor within `near` of it [m]. Whether all forces balance there."""
         if self.of is None:
             return self.go(displacement - self.displacement)
         if self.slope is None and not self.go(self.first):
@@ -173,7 +174,7 @@ class DisplacementControl:
 
 
 class CurvePoint(NamedTuple):
-    """A state at rest on a capacity curve."""
+    """State at rest on a capacity curve."""
 
     displacement: float  # of the live load since gravity, or of the monitor that is controlled, as it began [m]
     load: float  # internal multiplier
@@ -182,9 +183,9 @@ class CurvePoint(NamedTuple):
 
 
 class CapacityCurve:
-    """The points of a capacity curve from gravity on, and the state at its highest one.
+    """Points of a capacity curve from gravity on, and the state at its highest one.
 
-    whole: whether it came as far as was asked for; else its last point is where nothing rests any more, or, where
+    whole: whether it came as far as requested; else its last point is where nothing rests any more, or, where
     stopped says why, where the run ended.
     """
 
@@ -201,7 +202,7 @@ class CapacityCurve:
     stopped: str | None
 
     def add(self, point: CurvePoint, sim: Simulation) -> None:
-        """One more point; its state is kept where it is the highest so far."""
+        """Add a point; its state is stored where it is the highest so far."""
         self.points.append(point)
         if len(self.points) == 2:
             self.at_first = sim.save()
@@ -210,7 +211,7 @@ class CapacityCurve:
 
     @property
     def highest(self) -> CurvePoint:
-        """The point of the highest load."""
+        """Point of the highest load."""
         return self.points[self.peak]
 
     @property
@@ -224,7 +225,7 @@ class CapacityCurve:
         return values[:, 0], values[:, 1]
 
     def first_within(self, share: float) -> CurvePoint:
-        """The first point whose load is less than a share below the highest one, which may be without end."""
+        """Return the first point whose load is less than a share below the highest one, which may be infinite."""
         highest = self.highest.load
         least = highest - share * abs(highest) if np.isfinite(highest) else highest
         return next(point for point in self.points if point.load >= least)
@@ -232,7 +233,7 @@ class CapacityCurve:
 
 @dataclass
 class _NextIncrement:
-    """How a curve goes on."""
+    """Next increment of a capacity curve: its length and direction."""
 
     distance: float  # of the live load [m]
     along: float = 1.0  # which way the monitor went first
@@ -248,7 +249,7 @@ def trace(
     seen: Callable[[CurvePoint], None] = lambda point: None,
     coarser: float = 1.0,
 ) -> None:
-    """The curve from where the structure rests under its dead loads until it has gone `until` [m], into `curve`.
+    """Trace the capacity curve from rest under dead loads until it has gone `until` [m], into `curve`.
 
     That and longest, the most of an increment [m], are of DisplacementControl.way; increments begin as elastic ones and
     grow. coarser: all are so many times as long. A monitor that first moves against its axis counts against it.

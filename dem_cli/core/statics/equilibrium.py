@@ -40,7 +40,7 @@ class Verdict:
 
 
 class Ahead(NamedTuple):
-    """What a path from gravity, or a curve, says of a load (see FailureTest)."""
+    """Expectation about a load from a path from gravity or a curve (see FailureTest)."""
 
     plateau: bool = False
     reach: float = 0.0
@@ -51,7 +51,7 @@ NOTHING_KNOWN = Ahead()  # but that elastic displacements are overestimated, or 
 
 
 def unexpected(sim: Simulation) -> Ahead:
-    """What is said of a load where no path says that it grows no more: it may rest and rise again.
+    """Return the expectation for a load that no path calls a plateau: it may rest and rise again.
 
     Blocks of irregular walls give way by 30 to 150 elastic displacements before they rest.
     """
@@ -60,7 +60,7 @@ def unexpected(sim: Simulation) -> Ahead:
 
 @dataclass
 class _Settling:
-    """How far a structure has come on its way to rest or failure."""
+    """Progress of a structure on its way to rest or failure."""
 
     done: int = 0  # steps; looks of `relax`
     calm: int = 0  # looks in a row at which forces balanced
@@ -69,7 +69,7 @@ class _Settling:
 
 
 def check_finite(sim: Simulation) -> None:
-    """Raises SolverError that names the block where a number is no number."""
+    """Raises SolverError that names the block where a number is not finite."""
     bad = ~np.isfinite(sim.bodies.velocities).all(axis=1)
     if bad.any():
         name = sim.model.block_ids[int(np.flatnonzero(bad)[0])]
@@ -87,7 +87,8 @@ def relax(
     budget: Budget | None = None,
     elastic: bool = True,
 ) -> Verdict:
-    """Steepest fast way to an equilibrium at this load (FIRE); "unknown" if there is none within max_steps.
+    """Search for an equilibrium at this load by fast inertial relaxation (FIRE); "unknown" if there is none within
+    max_steps.
 
     "failure" where blocks came to rest elsewhere (`displaced`) than at `since` (Simulation.places; default: where they
     are now); scale: displacement that is elastic [m]; max_steps: None: that of the settings; budget: what the steps are
@@ -121,7 +122,7 @@ def relax(
 
 
 def stand(sim: Simulation, budget: Budget) -> Verdict:
-    """Equilibrium under dead loads alone, or proof that there is none."""
+    """Find an equilibrium under dead loads alone, or prove that there is none."""
     relaxation = sim.settings.relaxation
     start, scale = sim.places(), measures.dead_scale(sim)
     _weigh_down(sim, budget)
@@ -142,7 +143,7 @@ def settle_or_fail(
     ahead: Ahead = NOTHING_KNOWN,
     most_steps: float = math.inf,
 ) -> Verdict:
-    """Constant load with combined damping until equilibrium or failure is proven; "unknown" after `most_steps`.
+    """Hold a load with combined damping until equilibrium or failure is proven; "unknown" after `most_steps`.
 
     scale: displacement that is elastic [m]. Looks for failure when the time grew by √2 (statics/failure_test.py).
     since: places of the structure that must not have moved grossly when it comes to rest (Simulation.places);
@@ -171,7 +172,8 @@ def settle_or_fail(
 
 
 def _comes_to_rest(sim: Simulation, way: _Settling, tolerance: float, budget: Budget, doing: str) -> bool:
-    """On under a constant load until the next look for failure; whether it came to rest before."""
+    """Advance under a constant load until the next look for failure; returns whether the structure came to rest
+    before."""
     relaxation = sim.settings.relaxation
     while way.done < relaxation.chunk * round(math.sqrt(2.0) ** way.look):
         sim.stages.offer(way)
@@ -187,7 +189,8 @@ def _comes_to_rest(sim: Simulation, way: _Settling, tolerance: float, budget: Bu
 
 
 def _rests(sim: Simulation, tolerance: float, mode: int) -> bool:
-    """Stops all blocks, and whether forces balance where they stand: they may only have passed by an equilibrium."""
+    """Stop all blocks and test whether forces balance where they stand: they may only have passed by an
+    equilibrium."""
     sim.rest()
     sim.advance(1, mode)
     sim.rest()
@@ -195,13 +198,13 @@ def _rests(sim: Simulation, tolerance: float, mode: int) -> bool:
 
 
 def limit_falls(sim: Simulation) -> None:
-    """Blocks in flight would be detected at every step; what a joint holds is slower by far."""
+    """Limit the speed of falling blocks: in flight they would be detected at every step; joints are slower by far."""
     if sim.kinematics == "large" and len(sim.free):
         sim.limit_speed(sim.settings.relaxation.fall_speed * float(sim.widths[sim.free].min()))
 
 
 def _ramp(sim: Simulation, load: float, scale: float, budget: Budget, doing: str) -> None:
-    """To the load, at once where every block follows its neighbours, else so slowly that none is thrown.
+    """Change to a load, at once where every block follows its neighbours, else so slowly that none is thrown.
 
     What moves by `scale` in a ramp of n steps is accelerated by about 4·scale/n².
     """
@@ -218,7 +221,7 @@ def _ramp(sim: Simulation, load: float, scale: float, budget: Budget, doing: str
 
 
 def _weigh_down(sim: Simulation, budget: Budget) -> None:
-    """Dead loads little by little, where joints or links remember or blocks swell or shrink by themselves."""
+    """Apply dead loads little by little, where joints or links have memory or blocks swell or shrink by themselves."""
     steps, stair = max(_steps_of_memory(sim), _steps_of_links(sim)), _stair(sim)
     if len(sim.model.imposed_strains):
         steps, stair = _steps_by_depth(sim), sim.settings.relaxation.stair_of_strain
@@ -233,13 +236,13 @@ def _weigh_down(sim: Simulation, budget: Budget) -> None:
 
 
 def _steps_of_memory(sim: Simulation) -> int:
-    """Length of the ramp of a load on joints that remember; 0 for others."""
+    """Length of the ramp of a load on joints with memory; 0 for others."""
     return _steps_by_depth(sim) if sim.law.n_memory(sim.model.dimension) else 0
 
 
 def _steps_of_links(sim: Simulation) -> int:
-    """Length of a ramp in which blocks follow on ties and bars that yield or slide, without swinging past where they
-    rest, which these would remember; 0: there are none."""
+    """Length of a ramp in which blocks follow on ties and bars that yield or slide, without swinging past
+    equilibrium; 0: there are none."""
     relaxation = sim.settings.relaxation
     softest = min((link.softest() for link in sim.links if link.yields()), default=math.inf)
     light = sim.loads.inverse_masses[sim.free, : sim.model.dimension]
@@ -262,7 +265,7 @@ def _stair(sim: Simulation) -> int:
 
 @stage
 def _climb(sim: Simulation, put: Callable[[float], None], steps: int, stair: int) -> None:
-    """Steps with loads put on by their share, which grows smoothly to 1, each for `stair` of them."""
+    """Advance with loads applied by their share, which grows smoothly to 1, each for `stair` steps."""
     stairs, way = steps // stair, _Settling()
     sim.stages.resumed(way)
     while way.done < stairs:
@@ -274,7 +277,7 @@ def _climb(sim: Simulation, put: Callable[[float], None], steps: int, stair: int
 
 
 def _at_rest(sim: Simulation, since: np.ndarray, scale: float) -> Verdict:
-    """The verdict on a structure in which all forces balance."""
+    """Return the verdict on a structure in which all forces balance."""
     block = displaced(sim, since, scale)
     if block is None:
         return Verdict("equilibrium", sim.unbalanced)
@@ -282,7 +285,7 @@ def _at_rest(sim: Simulation, since: np.ndarray, scale: float) -> Verdict:
 
 
 def settle(sim: Simulation, track: Track, budget: Budget) -> Verdict:
-    """Dead loads; the row is kept in the track, the frame handed over."""
+    """Apply dead loads to equilibrium; the row is stored in the track, the frame handed over."""
     track.observer.progress("gravity", 0.0, 0.0, None)
     verdict = stand(sim, budget)
     track.keep("gravity")
@@ -291,7 +294,7 @@ def settle(sim: Simulation, track: Track, budget: Budget) -> Verdict:
 
 
 class _MovingOn:
-    """How far blocks have moved [m], and the share of the work that was released."""
+    """Largest displacement of blocks [m], and the share of the work that was released."""
 
     def __init__(self) -> None:
         self.moved = self.released = 0.0
@@ -299,7 +302,8 @@ class _MovingOn:
 
 @stage
 def released_in_motion(sim: Simulation, budget: Budget, load: float, far: float) -> float:
-    """Share of the work of a constant load that is released, once blocks moved on by so much [m] and any is."""
+    """Return the share of the work of a constant load that is released, once blocks moved on by so much [m] and
+    any is."""
     start, ledger, way, begun = sim.places(), measures.energy_sums(sim), _MovingOn(), sim.steps
     chunk = sim.settings.relaxation.chunk
     sim.stages.resumed(way)

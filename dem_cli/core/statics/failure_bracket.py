@@ -1,4 +1,4 @@
-"""The failure load as it was found: between a proven equilibrium and a proven failure, and the way to both."""
+"""Bracket of a failure load: between a proven equilibrium and a proven failure, with the search that led there."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ if TYPE_CHECKING:
 
 
 OK, NOT_CONVERGED, NO_FAILURE = "ok", "not converged", "no failure"
-EXISTS = "an equilibrium exists at this load"  # of a start that was asked for, which nothing says is reached
+EXISTS = "an equilibrium exists at this load"  # of a requested start, which nothing says is reached
 
 
 @dataclass(frozen=True)
 class LoadPass:
-    """One creep or one constant load; multipliers as users know them."""
+    """Creep or constant load tried in the search; multipliers as users know them."""
 
     kind: str  # "creep" | "start" | "load" | "impossible"
     steps: int
@@ -27,7 +27,7 @@ class LoadPass:
 
 @dataclass
 class FailureLoad:
-    """The failure load between two proofs, and the way to it; multipliers as users know them unless said otherwise."""
+    """Failure load between two proofs, and the search for it; multipliers as users know them unless said otherwise."""
 
     low: float | None = None  # highest proven equilibrium
     high: float | None = None  # lowest proven failure
@@ -39,8 +39,8 @@ class FailureLoad:
     onset: float | None = None  # lowest held load at which blocks had moved by more than joints deform
     peak_displacement: float = 0.0  # largest displacement of a block at the highest equilibrium [m]
     held: SavedState | None = None  # state of the highest equilibrium
-    found: bool = False  # the load is known, as closely as asked for or `wide`
-    wide: bool = False  # the bracket is wider than asked for
+    found: bool = False  # the load is known, to the requested resolution or `wide`
+    wide: bool = False  # the bracket is wider than the requested resolution
     failing: Verdict | None = None
     impossible: bool = False  # limit analysis proved that nothing is in equilibrium there; the motion shows it
     failed_from: SavedState | None = None  # equilibrium from which the lowest failure began
@@ -58,13 +58,13 @@ class FailureLoad:
 
     @property
     def carried(self) -> float:
-        """The highest proven equilibrium, where there is one."""
+        """Return the highest proven equilibrium, where there is one."""
         assert self.low is not None
         return self.low
 
     @property
     def failed(self) -> float:
-        """The lowest proven failure, where there is one."""
+        """Return the lowest proven failure, where there is one."""
         assert self.high is not None
         return self.high
 
@@ -85,7 +85,7 @@ class FailureLoad:
         return None if self.high is None or not self.low else (self.high - self.low) / abs(self.low)
 
     def begin_again(self, at_rest: SavedState) -> None:
-        """Forgets the bracket, but for its loads; at_rest: state under the dead loads alone."""
+        """Forget the bracket, but for its loads; at_rest: state under the dead loads alone."""
         self.earlier = (self.carried, self.failed)
         self.low, self.high, self.held = 0.0, None, at_rest
         self.found, self.wide, self.status, self.undecided = False, False, NOT_CONVERGED, []
@@ -96,13 +96,13 @@ class FailureLoad:
         self.high, self.failing, self.failed_from, self.failed_state, self.impossible = None, None, None, None, False
 
     def ends_beyond_its_path(self, resolution: float) -> bool:
-        """Whether a search that started from the path carries more than its plateau: blocks that wedged."""
+        """Test whether a search from the path carries more than its plateau: blocks that wedged."""
         path = self.limits.path if self.limits is not None and self.start.get("kind") == "path" else None
         load = None if path is None or not path.finished else path.load
         return self.found and load is not None and self.carried > (1.0 + 2.0 * resolution) * load
 
     def end_undecided(self, widest: float) -> None:
-        """The answer where the search ends before the bracket is narrow: both sides, if they are not too far apart.
+        """Close a search before the bracket is narrow: both sides are the answer, if they are not too far apart.
 
         widest: bracket, relative, that still is an answer. What limit analysis proved impossible is a side as well.
         """
@@ -115,7 +115,8 @@ class FailureLoad:
 
     @property
     def crept_beyond(self) -> bool:
-        """Whether the creep came to rest above the proven failure: what is carried depends on the way of loading."""
+        """Test whether the creep came to rest above the proven failure: the load carried depends on the way of
+        loading."""
         if not self.found or self.crept is None or self.high is None:
             return False
         return self.crept * self.scale > self.high
@@ -123,7 +124,7 @@ class FailureLoad:
 
 @dataclass(frozen=True)
 class SearchRange:
-    """How closely and how far a failure load is sought; multipliers as users know them."""
+    """Resolution and largest load of the search for a failure load; multipliers as users know them."""
 
     resolution: float  # width of the bracket, relative
     max_load: float | None = None  # above it the structure counts as self-locking; None: a hundred times the dead loads

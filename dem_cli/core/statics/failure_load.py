@@ -1,4 +1,4 @@
-"""The failure load from gravity: the load is raised in steps, each a proven equilibrium, until failure is proven.
+"""Failure load by steps from gravity: the load is raised, each step a proven equilibrium, until failure is proven.
 
 An estimate says where the steps have to be small. Limit analysis bounds it (statics/rigid_limits.py): what it proved
 impossible needs no proof by motion. Where a creep comes close to that bound, it is the estimate. Else the zero-dilation
@@ -13,7 +13,7 @@ replaced by a prescribed rate of its own displacement q·u, and its multiplier i
 several times and then set to zero. A joint that slides back and forth on that way may have lost strength; where the
 creep ends in an equilibrium inside the bracket, that one is the highest.
 
-A start next to failure that the case asks for (statics/warm_start.py) is held a little below its load, and the load is
+A requested start next to failure (statics/warm_start.py) is held a little below its load, and the load is
 raised from there; one from limit analysis is an equilibrium that exists, and no more.
 """
 
@@ -60,7 +60,7 @@ LARGE_SMOOTHED = (
 
 
 class LoadSearch:
-    """The search of the failure load of a structure that stands under its dead loads (see the module docstring).
+    """Search for the failure load of a structure that stands under its dead loads (see the module docstring).
 
     What is found goes to `answer` as it is found, so that it is not lost where the budget ends; the equilibria are
     kept as rows in the track. Loads inside are internal multipliers. buckles: whether a state at rest does.
@@ -88,7 +88,7 @@ class LoadSearch:
         answer.scale, answer.limit = scale, self.limit * scale
 
     def run(self, start: WarmStart | CurveStart | None = None) -> None:
-        """The bracket; start: a state next to failure that was asked for, instead of loads raised from gravity.
+        """Search for the bracket; start: a requested state next to failure, instead of loads raised from gravity.
 
         Where it does not hold, these are the way after all; where joints have a profile, nothing is estimated first.
         Raises SolverError where the live load moves nothing, or where the budget ends.
@@ -118,7 +118,7 @@ class LoadSearch:
             self._raise_to_estimate()
 
     def run_again_in_small_steps(self, most: float) -> None:
-        """The bracket again, raised from gravity in small steps: equal shares of `most` (as users know it).
+        """Search again from gravity in small steps of the load: equal shares of `most` (as users know it).
 
         Where histories differ the steps may decide: this is then the history that a failure load is stated for. No
         estimate has a say in it, so that it is always the same for the same structure. Where the budget ends first, or
@@ -141,11 +141,11 @@ class LoadSearch:
             self.answer.start = self.first_start
 
     def run_again_in_small_implicit_steps(self) -> bool:
-        """The bracket again by an implicit history in small steps; False: it was not found, and all is as before."""
+        """Search again by an implicit history in small steps; False: it was not found, and all is as before."""
         return self._again(lambda: self._ends_where_the_history_does(small=True))
 
     def _again(self, search: Callable[[], bool]) -> bool:
-        """Another search of the bracket from the dead loads; where it does not end the answer is the one before."""
+        """Search the bracket again from the dead loads; where that does not end, the answer before stays."""
         known, rows = replace(self.answer), [*self.track.kept]
         self.track.kept[:] = rows[:1]
         self.answer.begin_again(self.at_rest)
@@ -162,12 +162,12 @@ class LoadSearch:
         return finished
 
     def _trials(self, levels: list[float], step: float, longest: float = np.inf) -> TrialLoads:
-        """Loads to try from what is carried now."""
+        """Return the loads to try from the load that is carried now."""
         low, limit = self.answer.carried / self.sim.live_scale, min(self.limit, self.impossible)
         return TrialLoads(self.settings, self.resolution, low, levels, step, longest, limit)
 
     def _raise_to_estimate(self) -> None:
-        """The load raised from gravity, in steps that shrink towards an estimate of the failure load."""
+        """Raise the load from gravity, in steps that shrink towards an estimate of the failure load."""
         answer, settings = self.answer, self.settings
         estimate, expected = (self.impossible, True) if self._path_meets_the_bound() else self._estimated()
         hinges = expected and answer.limits is not None and not answer.limits.slides
@@ -178,7 +178,7 @@ class LoadSearch:
         self._raise_load(self._trials(levels, settings.first_step * self.resolution * estimate))
 
     def _estimated(self) -> tuple[float, bool]:
-        """An estimate by a creep, and whether the load is expected to fail there."""
+        """Estimate the failure load by a creep, and tell whether failure is expected there."""
         answer, settings, sim = self.answer, self.settings, self.sim
         self.track.observer.progress("estimating the failure load", 0.0, 0.0, None)
         estimate = self._creep(settings.reach * answer.compliance)
@@ -188,7 +188,7 @@ class LoadSearch:
         return self._expected(min(estimate, self.impossible)) if self.impossible < np.inf else (estimate, False)
 
     def _path_meets_the_bound(self) -> bool:
-        """Whether a path that was followed already rose steadily to the load that limit analysis allows at most."""
+        """Test whether a path already traced rose steadily to the upper bound of limit analysis."""
         limits, resolution = self.answer.limits, self.resolution
         path = limits.path if limits is not None and limits.followed else None
         if path is None or path.load is None or not path.finished or self.limit < self.impossible < np.inf:
@@ -197,7 +197,8 @@ class LoadSearch:
         return steady and path.load >= (1.0 - self.settings.short * resolution) * (self.answer.bound or np.inf)
 
     def _expected(self, estimate: float) -> tuple[float, bool]:
-        """A better estimate, and whether the load is expected to fail there: at the bound, or where the path ends."""
+        """Improve an estimate, and tell whether the load is expected to fail there: at the bound, or at the end of
+        the path."""
         limits = self.answer.limits
         assert limits is not None
         if estimate >= self.settings.likely * self.impossible or not limits.slides:
@@ -214,7 +215,7 @@ class LoadSearch:
         return load, True
 
     def _ends_where_the_history_does(self, small: bool = False) -> bool:
-        """Whether the explicit solver holds the load that an implicit history held last, and shows failure above it.
+        """Test whether the explicit solver carries the last load of an implicit history, and fails above it.
 
         Else all is as it was, also where loads raised from gravity fail sooner: these are other histories then.
         small: in small steps of the load.
@@ -246,7 +247,7 @@ class LoadSearch:
         return False
 
     def _ends_where_the_path_does(self) -> bool:
-        """Whether the path of a large structure leads to a load that the explicit solver holds.
+        """Test whether the path of a large structure leads to a load that the explicit solver carries.
 
         From there the load is raised for as long as is affordable. To prove a failure by motion takes 300,000 steps and
         more: the answer is "at least", and "not above" the bound.
@@ -272,7 +273,8 @@ class LoadSearch:
         return True
 
     def _holds(self, start: WarmStart | CurveStart, below: float) -> bool:
-        """Whether the explicit solver holds the state of `start` a share below its load; else all is as it was."""
+        """Test whether the explicit solver carries the state of `start` a share below its load; else all is as it
+        was."""
         sim, answer = self.sim, self.answer
         load = (1.0 - below) * start.load / sim.live_scale
         if not 0.0 < load < self.limit:
@@ -289,7 +291,8 @@ class LoadSearch:
         return True
 
     def _held(self, start: WarmStart | CurveStart, load: float) -> Verdict:
-        """The verdict on a load from a start next to it; curves, whose peaks are flat, come to rest the fast way."""
+        """Return the verdict on a load from a start next to it; curves, whose peaks are flat, come to rest the
+        fast way."""
         sim, scale = self.sim, self.answer.elastic * load
         if start.kind == CURVE:
             tolerance, most = sim.settings.relaxation.tolerance, self.settings.hold_start
@@ -300,8 +303,9 @@ class LoadSearch:
         return settle_or_fail(sim, load, self.budget, scale, ahead=Ahead(change=self._elastic_change(load)))
 
     def _fail_above(self, load: float) -> Verdict:
-        """Failure at a load that limit analysis proved impossible: its mechanism gains more work than any forces in
-        the friction cones can take, and the explicit solver shows that the structure moves on and releases energy.
+        """Prove failure at a load that limit analysis proved impossible. Its mechanism gains more work than any
+        forces in the friction cones can take, and the explicit solver shows that the structure moves on and
+        releases energy.
 
         So little above the bound a structure takes long to move. Where a mechanism at that load is known it is pushed a
         little, and its motion compared with that: another one that lies as close may have set in as well.
@@ -315,7 +319,8 @@ class LoadSearch:
         return self._moves_on(load)
 
     def _mechanism_at(self, load: float) -> np.ndarray | None:
-        """The mechanism of the bound, if nothing slides in it, or of a path that ends there, (n_blocks, n_dof)."""
+        """Return the mechanism of the bound, if nothing slides in it, or of a path that ends there, (n_blocks,
+        n_dof)."""
         limits = self.answer.limits
         if limits is None or limits.associated is None:
             return None
@@ -366,7 +371,7 @@ class LoadSearch:
         return estimate
 
     def _raise_load(self, trials: TrialLoads) -> None:
-        """Load after load, until the bracket is narrow enough, or as narrow as it can be made."""
+        """Raise the load, trial after trial, until the bracket is narrow enough, or as narrow as it can be made."""
         answer = self.answer
         while (load := trials.next()) is not None and not self._enough(trials):
             verdict = self._settle(load)
@@ -403,7 +408,7 @@ class LoadSearch:
         answer.impossible = load >= self.impossible
 
     def _enough(self, trials: TrialLoads) -> bool:
-        """Whether a bracket that is known cost so much, or would until it is any narrower, that it stays as it is."""
+        """Test whether a bracket cost so much, or would until it is any narrower, that it stays as it is."""
         answer, to_come = self.answer, self._steps_to_come(trials)
         if not (answer.low or trials.goal) or (answer.high is None and answer.bound is None):
             return False
@@ -422,11 +427,11 @@ class LoadSearch:
         return failures[-1] if failures and self.large and trials.high is not None else 0
 
     def _taken(self, state: str) -> list[int]:
-        """Steps of the loads that were raised and ended so."""
+        """List the steps of each raised load that ended with this verdict."""
         return [each.steps for each in self.answer.passes if each.kind == "load" and each.state == state]
 
     def _try_crept(self, trials: TrialLoads) -> None:
-        """The equilibrium of the creep, where it is inside the bracket: closer to failure, if it holds as well."""
+        """Try the equilibrium of the creep inside the bracket: it is closer to failure, if it is one."""
         answer = self.answer
         if answer.crept is None or trials.high is None or not trials.low < answer.crept < trials.high:
             return
@@ -437,7 +442,7 @@ class LoadSearch:
             answer.held = held
 
     def _settle(self, load: float) -> Verdict:
-        """The verdict on a load, from the highest equilibrium so far."""
+        """Return the verdict on a load, from the highest equilibrium so far."""
         sim, answer, settings = self.sim, self.answer, self.settings
         impossible = load >= self.impossible
         doing = "failing" if impossible else "raising the load"
@@ -489,7 +494,7 @@ class LoadSearch:
         return self.answer.elastic * abs(load - self.sim.load) if self.answer.start.get("kind") == CURVE else None
 
     def _ahead(self, load: float) -> Ahead:
-        """What a path or a curve that was followed says of a load."""
+        """Return the expectation about a load from a path or a curve that was followed."""
         limits, change = self.answer.limits, self._elastic_change(load)
         if limits is not None and self.impossible < np.inf and not limits.slides:
             return Ahead(reach=self.settings.unslid, change=change)  # there is an equilibrium, however softly it rests
@@ -504,7 +509,7 @@ class LoadSearch:
         self.answer.passes.append(LoadPass(kind, self.sim.steps - before, load * self.sim.live_scale, state))
 
     def _keep(self, load: float) -> None:
-        """The highest proven equilibrium so far, and its row."""
+        """Store the highest proven equilibrium so far, and its row."""
         sim, answer = self.sim, self.answer
         answer.low, answer.held = load * sim.live_scale, sim.save()
         answer.peak_displacement = measures.largest_displacement(sim)
@@ -512,7 +517,7 @@ class LoadSearch:
         self.track.keep("loading")
 
     def _raised_beside(self, starts: list[WarmStart]) -> bool:
-        """Whether loads raised from gravity by the explicit solver alone hold nearly as far as an implicit history did.
+        """Test whether loads raised by the explicit solver alone come nearly as far as an implicit history.
 
         Stones that swing lose what stones that creep keep: where it fails sooner the two are different histories.
         """
@@ -528,7 +533,7 @@ class LoadSearch:
         return True
 
     def _pass_by(self, start: WarmStart) -> None:
-        """The row of an equilibrium that a history went through, which the explicit solver need not hold."""
+        """Record the row of an equilibrium of a history, which the explicit solver need not carry."""
         start.put_into(self.sim)
         self.sim.advance(1, slot.HOLD_LOAD)
         self._see_onset(start.load / self.sim.live_scale)

@@ -1,4 +1,4 @@
-"""Failure test: motion at a constant load, when it can be nothing but failure, and when rest is no equilibrium.
+"""Failure test: motion at a constant load that proves failure, and rest that is not an equilibrium.
 
 A failure is shown by power: the motion accelerates while the loads release more energy than friction and
 joints take, both since the start and in the last doubling of time. The blocks that show it must have been
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 
 class FailureProof(NamedTuple):
-    """The proof of a failure."""
+    """Proof of a failure by the motion of a block."""
 
     released: float  # share of the work of the loads that became motion or was damped
     growth: float  # of the displacement in the last doubling of time
 
 
 class FailureTest:
-    """How the blocks move from the moment at which a load became constant.
+    """Test for failure by the motion of blocks since a load became constant.
 
     scale    displacement that is elastic [m]
     plateau  the load is known to grow no more with displacement: high structures need not go further than low ones
@@ -56,7 +56,7 @@ class FailureTest:
         self.energies = [measures.energy_sums(sim)]
 
     def look(self) -> FailureProof | None:
-        """To be called whenever the time grew by √2; the proof of failure where there is one."""
+        """Look for the proof of failure, whenever the time grew by √2; None where there is none yet."""
         proof = self.sim.settings.proof
         moved = np.abs(self.sim.places() - self.start).max(axis=1)
         self.moved.append(moved)
@@ -85,7 +85,7 @@ class FailureTest:
 
 
 def displaced(sim: Simulation, since: np.ndarray, scale: float) -> int | None:
-    """The block that came to rest off what it stood on at `since` (Simulation.places); None: there is none.
+    """Return the block that came to rest off its support at `since` (Simulation.places); None: there is none.
 
     A structure that comes to rest after that is another structure: something toppled, slid down or fell. How far blocks
     have moved says nothing by itself: a tall cantilever bends by its width and stands (`_carried_as_before`). Where
@@ -101,8 +101,8 @@ def displaced(sim: Simulation, since: np.ndarray, scale: float) -> int | None:
 
 
 def moved_far(sim: Simulation, since: np.ndarray) -> tuple[int, float] | None:
-    """The block that moved furthest since `since` (Simulation.places), and how far [m]; None: nothing moved so far that
-    it deserves a word."""
+    """Return the block that moved furthest since `since` (Simulation.places), and its displacement [m]. None:
+    nothing moved so far that it deserves a word."""
     if sim.kinematics == "fixed":
         return None
     moved, turned = _beyond_play(sim, since)
@@ -130,13 +130,13 @@ def _beyond_play(sim: Simulation, since: np.ndarray) -> tuple[np.ndarray, np.nda
 
 
 def _gross(sim: Simulation, moved: np.ndarray, turned: np.ndarray) -> np.ndarray:
-    """Which free blocks moved by much of their width, or turned by much, (n_blocks,) bool."""
+    """Find free blocks that moved by much of their width, or turned by much, (n_blocks,) bool."""
     proof = sim.settings.proof
     return ((moved > proof.gross * sim.widths) | (turned > proof.turned * sim.shape.radii)) & ~sim.model.fixed
 
 
 def _carried_as_before(sim: Simulation, since: np.ndarray, scale: float) -> np.ndarray:
-    """Which blocks hang together with supports by joints that are still the same ones, (n_blocks,) bool.
+    """Find blocks that are connected with supports by joints that are still the same ones, (n_blocks,) bool.
 
     In such a joint the places of both blocks that touch now were next to each other at `since`, and neither has turned
     much against the other.

@@ -6,7 +6,7 @@ linear oscillator of the same amplitudes F, u that loses as much energy E in a c
     ζ = E / (2π F u)
 
 Between two states of rest the load did at least what friction and springs took, at most all that it gave in the run;
-in between, damping of the run, are motion of the solver that is none of the structure, and what snaps. Within these
+in between, damping of the run, are motion of the solver and not of the structure, and what snaps. Within these
 bounds its work is that of a multiplier that is straight in the displacement.
 
 Source: Chopra, Dynamics of Structures, equivalent viscous damping, ζ = E_D/(4π E_S0) with E_S0 = F u/2. Of an elastic,
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class PathState(NamedTuple):
-    """A state of rest on a path."""
+    """State of rest on a load path."""
 
     displacement: float  # of the live load [m]
     load: float  # its multiplier
@@ -38,7 +38,7 @@ class PathState(NamedTuple):
 
 
 class HysteresisLoop(NamedTuple):
-    """One cycle."""
+    """Hysteresis loop of one cycle: energy, amplitudes and equivalent viscous damping."""
 
     first: int  # turning point that it begins at, from 1; 0: the start of the path
     last: int  # and ends at
@@ -61,14 +61,15 @@ def pairs_of(path: Sequence[float]) -> list[tuple[int, int]]:
 
 
 def state_of(sim: Simulation, at_rest: float) -> PathState:
-    """Where a simulation is; at_rest: `measures.live_travel` at the start of the path [m]."""
+    """Read the state of a simulation on its path; at_rest: `measures.live_travel` at the start of the path [m]."""
     travel, ledger = measures.live_travel(sim) - at_rest, sim.ledger
     load, share = sim.load * sim.live_scale, sim.dead_share
     return PathState(travel, load, share, float(ledger[slot.LIVE]), float(ledger[slot.DAMPING]))
 
 
 def energy_between(states: Sequence[PathState], force: float) -> float:
-    """Work of the live load from the first state to the last [J]. force: of it at a multiplier of 1 [N]."""
+    """Compute the work of the live load from the first state to the last [J]. force: of it at a multiplier of 1
+    [N]."""
     u, loads, shares, given, damped = np.array(states).T
     straight = force * float(np.trapezoid(shares * loads, u))
     most = float(given[-1] - given[0])
@@ -79,7 +80,7 @@ def energy_between(states: Sequence[PathState], force: float) -> float:
 def loops(
     path: Sequence[float], turns: Sequence[int], states: Sequence[PathState], force: float
 ) -> list[HysteresisLoop]:
-    """The loops of a path that was followed as far as it was, by all its states.
+    """Compute the hysteresis loops of a path, as far as it was followed, from all its states.
 
     turns: number of the state at the start of the path and at each turning point that was reached. force: of the live
     load at a multiplier of 1 [N].

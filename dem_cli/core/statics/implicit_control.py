@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class PosedIncrement(NamedTuple):
-    """The contact problem of the present configuration, in its units."""
+    """Contact problem of the present configuration, in its units."""
 
     problem: Elastic
     before: State  # forces of the last state; no displacements yet
@@ -37,8 +37,8 @@ class PosedIncrement(NamedTuple):
 
 
 def why_not(sim: Simulation) -> str | None:
-    """Why implicit increments do not apply: a law without a friction cone, profiles, ties, joints or blocks that are
-    elastic."""
+    """Return the reason why implicit increments do not apply: a law without a friction cone, profiles, ties,
+    elastic parts."""
     from dem_cli.core.limit.cone import friction_of
 
     if sim.links or sim.model.n_modes or sim.properties.rough:
@@ -77,7 +77,7 @@ class ImplicitControl(DisplacementControl):
         self.effort = 0.0
 
     def mostly(self, until: float) -> bool:
-        """Whether most of the increments up to DisplacementControl.way had a solution."""
+        """Test whether most of the increments up to DisplacementControl.way had a solution."""
         starts, ramped = (sum(way < until for way in ways) for ways in (self.starts, self.ramped))
         return ramped <= self.settings.mostly * starts
 
@@ -93,8 +93,8 @@ class ImplicitControl(DisplacementControl):
         self.watch()
 
     def _gone(self, distance: float) -> bool:
-        """Whether an increment had a solution, where the structure is now; small ones without a displacement follow it,
-        as forces turn with the blocks.
+        """Solve an increment from the present configuration; returns whether it had a solution. Small ones without
+        a displacement follow it, as forces turn with the blocks.
         """
         settings = self.settings
         if self.effort > settings.implicit_effort:
@@ -129,7 +129,7 @@ class ImplicitControl(DisplacementControl):
         return PosedIncrement(problem, before, kept, structure.on_blocks)
 
     def _solution(self, posed: PosedIncrement, distance: float) -> State | None:
-        """The state after a displacement of the live load [m], or None."""
+        """Solve for the state after a displacement of the live load [m]; None where there is no solution."""
         from dem_cli.core.limit.interior import Increment
 
         problem, before, path = posed.problem, posed.before, posed.problem.settings.path
@@ -145,7 +145,7 @@ class ImplicitControl(DisplacementControl):
         return found
 
     def _move(self, posed: PosedIncrement, found: State) -> None:
-        """Puts the blocks where an increment takes them, with its shear forces; gaps follow from the geometry."""
+        """Move the blocks to where an increment takes them, with its shear forces; gaps follow from the geometry."""
         problem, before, kept, on_blocks = posed
         slid = problem.slid(found.displacements) + (found.shear - before.shear) / problem.ks_t
         friction = -float(product(found.shear, slid)) * problem.weight * problem.unit

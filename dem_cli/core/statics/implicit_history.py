@@ -35,7 +35,7 @@ class Resisted(NamedTuple):
 
 
 class _Step(NamedTuple):
-    """A step of time that was found."""
+    """Time step that was solved: its state, length and speed."""
 
     state: State  # at its end
     length: float
@@ -43,7 +43,7 @@ class _Step(NamedTuple):
 
 
 class Level(NamedTuple):
-    """A load that was kept constant."""
+    """Load that was kept constant, with its verdict."""
 
     load: float  # multiplier, as users know it
     verdict: str  # HOLDS, FAILS or UNDECIDED
@@ -52,7 +52,7 @@ class Level(NamedTuple):
 
 
 class HeldState(NamedTuple):
-    """An equilibrium on the way."""
+    """Equilibrium on an implicit history."""
 
     load: float  # multiplier, as users know it
     normal: np.ndarray  # [N], (n_points,)
@@ -63,7 +63,7 @@ class HeldState(NamedTuple):
 
 
 class LoadHistory(NamedTuple):
-    """An implicit history from gravity to the lowest load that failed."""
+    """Implicit history from gravity to the lowest load that failed."""
 
     high: float  # that load, a multiplier as users know it
     held: list[HeldState]  # equilibria, upwards
@@ -71,11 +71,11 @@ class LoadHistory(NamedTuple):
 
     @property
     def low(self) -> float:
-        """The highest load that held."""
+        """Return the highest load that was carried."""
         return self.held[-1].load
 
     def summary(self) -> dict[str, Any]:
-        """What summary.json says of it."""
+        """Return the entries of summary.json about the implicit history."""
         return {
             "load": self.low,
             "fails": self.high,
@@ -86,7 +86,7 @@ class LoadHistory(NamedTuple):
 
 @dataclass
 class ImplicitHistory:
-    """Loads that hold and fail, in steps from gravity; loads are multipliers as users know them.
+    """Implicit history: loads that are carried and fail, in steps from gravity; multipliers as users know them.
 
     stop: whether to give up, asked before each step. The highest load that held is `low` with its `state`, the lowest
     that failed `high`.
@@ -109,7 +109,7 @@ class ImplicitHistory:
         self._stretched = 0.0  # displacement at which ties yield that cross what opens
 
     def search(self, bound: float, resolution: float, small: bool = False) -> LoadHistory | None:
-        """The load that fails, below a bound, to a relative width; None where it was not found.
+        """Search for the load that fails, below a bound, to a relative width; None where it was not found.
 
         small: in small steps of the load, which meet what larger ones step over.
         """
@@ -118,7 +118,7 @@ class ImplicitHistory:
         return LoadHistory(self.high, self.held, self.levels)
 
     def _close_in(self, bound: float, resolution: float, small: bool) -> bool:
-        """Load after load, until the bracket is as narrow; False where one of them stays undecided.
+        """Try load after load, until the bracket is as narrow; False where one of them stays undecided.
 
         What failed after a jump may hold when it is reached in steps: from the last load that held these go on.
         """
@@ -139,7 +139,7 @@ class ImplicitHistory:
         return self._narrowed(resolution)
 
     def _narrowed(self, resolution: float) -> bool:
-        """Loads between the last that held and the one that failed, beside the plateau of the resistance."""
+        """Return loads between the last carried and the first failed, beside the plateau of the resistance."""
         beside, tries = self.settings.beside * resolution, 0
         while self.high is not None and self.high - self.low > resolution * self.low:
             plateau = next(level.resisted for level in reversed(self.levels) if level.verdict == FAILS)
@@ -152,12 +152,12 @@ class ImplicitHistory:
         return True
 
     def _tried(self, load: float) -> str:
-        """The verdict on a load."""
+        """Return the verdict on a load."""
         self.levels.append(self._hold(load))
         return self.levels[-1].verdict
 
     def _stand(self) -> bool:
-        """Equilibrium under dead loads; False: not found."""
+        """Find the equilibrium under dead loads; False: not found."""
         problem, rest = self.problem, at_rest(self.problem)
         for easier, folds in problem.settings.path.easier[: self.settings.under_dead_loads]:
             tau = easier * first_products(problem, rest, None)
@@ -177,7 +177,8 @@ class ImplicitHistory:
         return self._elastic > 0.0
 
     def _settled(self, state: State) -> State | None:
-        """Equilibrium under dead loads, which come at once, by overdamped steps; None: they do not come to rest."""
+        """Find the equilibrium under dead loads, applied at once, by overdamped steps; None: they do not come to
+        rest."""
         settings, step = self.settings, self.settings.first_under_dead_loads
         for _ in range(settings.most_under_dead_loads):
             taken = self._step(state, 0.0, step, 0.0)
@@ -192,7 +193,8 @@ class ImplicitHistory:
         return (float(product(self.problem.live, state.displacements)) - self._origin) / self._elastic
 
     def _hold(self, load: float) -> Level:
-        """A constant load from the highest that held so far; where it holds it is that."""
+        """Hold a constant load from the highest that was carried so far; where it is carried it becomes the
+        highest."""
         problem, settings, state, reached = self.problem, self.settings, self.state, self._reached
         assert state is not None
         step, last, past = self._first_step, 0.0, list[Resisted]()
@@ -220,7 +222,8 @@ class ImplicitHistory:
         return Level(load, UNDECIDED, len(past), max((one.load for one in past), default=0.0))
 
     def _step(self, state: State, load: float, length: float, longer: float) -> _Step | None:
-        """A step of time, made shorter with other first products as often as it fails; None: it failed in all sizes.
+        """Solve a time step, made shorter with other first products as often as it fails; None: it failed in all
+        sizes.
 
         longer: its length over that of the step before, by which slips go on.
         """

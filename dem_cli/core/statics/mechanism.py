@@ -1,4 +1,5 @@
-"""Failure mechanism: who takes part, and how, from the motion between the last equilibrium and proven failure."""
+"""Failure mechanism: the blocks and joints that take part, from the motion between the last equilibrium and
+failure."""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ from dem_cli.core.kernels import records as slot
 
 
 def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
-    """failure_mode, share of friction work, and the blocks and joints that take part.
+    """Describe the mechanism: failure_mode, share of friction work, and the blocks and joints that take part.
 
     sim: on its way into failure; held: the saved state of the last equilibrium (Simulation.save).
     """
@@ -56,7 +57,7 @@ def describe(sim: Simulation, held: SavedState) -> dict[str, Any]:
 
 
 def follows(sim: Simulation, held: SavedState, velocities: np.ndarray) -> bool:
-    """Whether blocks moved since a saved state as a mechanism says, and no other has set in besides.
+    """Test whether blocks moved since a saved state as a mechanism says, and no other has set in besides.
 
     velocities: of that mechanism, in any unit, (n_blocks, n_dof)
     """
@@ -69,7 +70,7 @@ def follows(sim: Simulation, held: SavedState, velocities: np.ndarray) -> bool:
 
 
 def moved_blocks(sim: Simulation) -> dict[str, Any]:
-    """Blocks that went along in a collapse, by how far they are from where they started."""
+    """Blocks that took part in a collapse, judged by their displacement from the start."""
     shift = np.sqrt((displacements(sim) ** 2).sum(axis=1))
     return named(sim, np.flatnonzero(shift > sim.settings.mechanism.takes_part * shift.max(initial=0.0)))
 
@@ -81,7 +82,7 @@ def _size(sim: Simulation) -> float:
 
 
 def named(sim: Simulation, blocks: np.ndarray) -> dict[str, Any]:
-    """How many blocks, and the names of the first ones."""
+    """Return the number of blocks, and the names of the first ones."""
     names = [sim.model.block_ids[i] for i in blocks[: sim.settings.mechanism.listed]]
     return {"count": len(blocks), "first": names}
 

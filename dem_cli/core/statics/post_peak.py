@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class CurvePeak(NamedTuple):
-    """The peak of the curve of a collapse."""
+    """Peak of the load–displacement curve of a collapse."""
 
     load: float | None = None  # highest multiplier, internal
     displacement: float | None = None  # where the curve first came close to it or to the failure load [m]
@@ -36,7 +36,7 @@ class CurvePeak(NamedTuple):
 def softness(
     ratio: float, elastic: float, load: float, edge: float, until: float, settings: Settings = DEFAULT
 ) -> float:
-    """kn·h/W for "auto" joints in a collapse.
+    """Return the stiffness ratio kn·h/W for "auto" joints in a collapse.
 
     As stiff as the elastic displacement at failure asks, unless the way would take more than the most steps.
     ratio: kn·h/W in the search; elastic: largest elastic displacement per unit of multiplier there [m]; edge: smallest
@@ -52,7 +52,7 @@ def softness(
 
 @dataclass
 class _Following:
-    """How far a collapse was followed."""
+    """Progress of a collapse that is followed."""
 
     start: int  # steps before
     ceiling: float  # internal multiplier above which it is inertia
@@ -64,7 +64,7 @@ class _Following:
     curve: list[tuple[float, float]] = field(default_factory=list)  # internal multipliers and displacements [m]
 
     def enter(self, load: float, failure: float, settings: PostPeakSettings) -> None:
-        """The mean internal multiplier of another look; a collapse begins where the load is that of failure."""
+        """Enter the mean internal multiplier of another look; a collapse begins where the load is that of failure."""
         if load > self.ceiling:
             self.ceiling = math.inf  # however slowly: it carries more, now that it has moved
         self.highest = max(self.highest, load)
@@ -73,7 +73,7 @@ class _Following:
             self.stage = "collapse"
 
     def peak(self, failure: float, at_peak: float) -> CurvePeak:
-        """The peak of the curve, at its end."""
+        """Return the peak of the curve, once it is at its end."""
         close, end = at_peak * min(self.highest, failure), self.curve[-1][1]
         reached = next((moved for load, moved in self.curve if load >= close), end)
         return CurvePeak(self.highest, reached, end, self.ceiling == math.inf)
@@ -123,7 +123,7 @@ def follow(
 
 
 def _creep(sim: Simulation, steps: int, ceiling: float, budget: Budget) -> bool:
-    """So many steps of a creep; done again more slowly, some times, as long as their mean load is above the ceiling.
+    """Creep for so many steps; repeated more slowly, some times, as long as their mean load is above the ceiling.
 
     What is above the failure load is inertia and damping of blocks that are hurried. Returns whether it was slowed.
     """
@@ -142,14 +142,15 @@ def _creep(sim: Simulation, steps: int, ceiling: float, budget: Budget) -> bool:
 
 
 def soften_falls(sim: Simulation, until: float, steps: int | None = None) -> None:
-    """Limits the speed of blocks that fall while others go a way of `until` [m] in so many steps (None: a collapse)."""
+    """Limit the speed of blocks that fall while others go a way of `until` [m] in so many steps (None: a collapse)."""
     post_peak = sim.settings.post_peak
     steps = post_peak.fewest if steps is None else steps
     sim.limit_speed(max(post_peak.fall_speed * sim.smallest, post_peak.fall_pace * until / steps))
 
 
 def follow_load(sim: Simulation, track: Track, failure: float, until: float, frames: int, budget: Budget) -> None:
-    """The collapse under a constant load until a block moved by `until` [m]; where it holds after all, a little more.
+    """Follow the collapse under a constant load until a block moved by `until` [m]; where it is carried, a little
+    more.
 
     failure: internal multiplier that was proved impossible. Rows and frames of the way up are those of the search.
     """
@@ -164,7 +165,7 @@ def follow_load(sim: Simulation, track: Track, failure: float, until: float, fra
 
 @dataclass
 class _Falling:
-    """How far a collapse under a constant load has come."""
+    """Progress of a collapse under a constant load."""
 
     load: float  # internal multiplier
     calm: int = 0  # looks in a row at which forces balanced
@@ -176,7 +177,7 @@ class _Falling:
 def fall_under(
     sim: Simulation, track: Track, load: float, until: float, frames: int, budget: Budget, harder: float | None = None
 ) -> bool:
-    """On from the present state under a constant load until a block moved by `until` [m]; rows and frames of that.
+    """Advance under a constant load until a block moved by `until` [m]; rows and frames of that.
 
     load: internal multiplier. harder: factor on the load wherever it holds after all; None: False is returned then.
     """

@@ -1,4 +1,4 @@
-"""Rigid-block limits of a structure: the associated bound and the zero-dilation path, each found when first asked for.
+"""Rigid-block limits of a structure: the associated bound and the zero-dilation path, each computed at first use.
 
 The bound is rigorous: above it no forces inside the friction cones are in equilibrium, whatever the history. The path
 is a second history from gravity (limit/path.py), by another method than the explicit solver's.
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
 
 
 class RigidLimits:
-    """The associated load and the path of the blocks of a simulation; multipliers as users know them.
+    """Associated load and zero-dilation path of the blocks of a simulation; multipliers as users know them.
 
     why_not   why limit analysis does not apply: geometry that moves, profiles, a law without a friction cone, no loads
     gaps      of all contact points at the start [m], (n_points,); what is open there carries nothing
     touching  points without a gap, (n_points,) bool
-    seconds   wall time of the associated load and of the path, as far as they were asked for
+    seconds   wall time of the associated load and of the path, as far as they were computed
     """
 
     def __init__(self, job: Job, sim: Simulation) -> None:
@@ -49,7 +49,7 @@ class RigidLimits:
 
     @cached_property
     def _matrices(self) -> tuple[LimitStructure, np.ndarray] | None:
-        """The structure and friction of its points; None where limit analysis does not apply."""
+        """Return the structure and the friction of its points; None where limit analysis does not apply."""
         if self.why_not is not None:
             return None
         self.job.clock.imported("dem_cli.core.limit.analysis")
@@ -65,7 +65,7 @@ class RigidLimits:
 
     @cached_property
     def associated(self) -> LimitLoad | None:
-        """The associated limit load; None where limit analysis does not apply."""
+        """Return the associated limit load; None where limit analysis does not apply."""
         if self._matrices is None:
             return None
         self.job.clock.progress("limit analysis", 0.0, 0.0, None)
@@ -83,7 +83,8 @@ class RigidLimits:
 
     @cached_property
     def without_head_friction(self) -> LimitLoad | None:
-        """The associated limit load without friction in head joints; None where limit analysis does not apply."""
+        """Return the associated limit load without friction in head joints; None where limit analysis does not
+        apply."""
         if self._matrices is None:
             return None
         from dem_cli.core.limit.cone import friction_of
@@ -103,12 +104,13 @@ class RigidLimits:
 
     @property
     def bound(self) -> float | None:
-        """Multiplier above which nothing is in equilibrium; None: not known, or there is none."""
+        """Multiplier above which no equilibrium exists; None: not known, or there is none."""
         return self.associated.upper if self.associated is not None else None
 
     @cached_property
     def slides(self) -> bool:
-        """Whether friction takes part in the mechanism of the bound; without it the history of sliding says nothing."""
+        """Test whether friction takes part in the mechanism of the bound; without it the history of sliding does
+        not matter."""
         found = self.associated
         if self._matrices is None or found is None or found.upper is None:
             return True
@@ -118,7 +120,7 @@ class RigidLimits:
 
     @cached_property
     def none_slides(self) -> bool:
-        """Whether friction is proved to take no part in any mechanism of the bound, not only in the one found."""
+        """Test whether friction is proved to take no part in any mechanism of the bound, not only in the one found."""
         found, settings = self.associated, self.job.settings.limit.associated
         if self.slides or self._matrices is None or found is None:
             return False
@@ -128,7 +130,7 @@ class RigidLimits:
 
     @cached_property
     def path(self) -> Path | None:
-        """The zero-dilation path from gravity to the plateau of its load; None where it does not apply."""
+        """Trace the zero-dilation path from gravity to the plateau of its load; None where it does not apply."""
         if self._matrices is None or self._matrices[0].links.elsewhere:
             return None
         begun = time.perf_counter()
@@ -150,14 +152,14 @@ class RigidLimits:
 
     @cached_property
     def history(self) -> LoadHistory | None:
-        """The implicit history under load from gravity to failure; None where it does not apply, or was not found."""
+        """Return the implicit history from gravity to failure; None where it does not apply, or was not found."""
         if self._matrices is None or self._matrices[0].links.elsewhere or self.bound is None:
             return None
         return self._timed_history(small=False)
 
     @cached_property
     def history_in_small_steps(self) -> LoadHistory | None:
-        """The same in small steps of the load."""
+        """Return the implicit history in small steps of the load; None as `history`."""
         return None if self.history is None else self._timed_history(small=True)
 
     def _timed_history(self, small: bool) -> LoadHistory | None:
@@ -184,12 +186,12 @@ class RigidLimits:
 
     @cached_property
     def largest(self) -> int:
-        """Blocks of the largest structure."""
+        """Number of blocks of the largest structure."""
         return largest_structure(self.sim.joints.blocks, self.sim.model.fixed)
 
     @property
     def too_large(self) -> bool:
-        """Whether a path takes too many factorisations to be followed to its end: in the plane it is smoothed."""
+        """Test whether a path takes too many factorisations to be followed to its end: in the plane it is smoothed."""
         return self.job.settings.limit.too_large(self.largest, self.sim.model.dimension)
 
     def on_points(self, values: np.ndarray, otherwise: np.ndarray | float = 0.0) -> np.ndarray:
@@ -206,7 +208,7 @@ class RigidLimits:
 
     @property
     def followed(self) -> bool:
-        """Whether the path was asked for."""
+        """Test whether the path was traced."""
         return "path" in self.seconds
 
     def loads(self) -> LimitLoads | None:

@@ -1,4 +1,4 @@
-"""Way of settling supports, and how far along it a structure stands: the settlement at collapse, by bisection."""
+"""Settlement of supports and the stage at which a structure stands: the settlement at collapse, by bisection."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from dem_cli.core.statics.post_peak import soften_falls
 
 @dataclass
 class _Ends:
-    """Looks between which it falls."""
+    """Bracket of looks between which the structure falls."""
 
     low: int  # it stands
     high: int  # it falls
 
 
 class SettlementWay:
-    """Supports move evenly, look by look; stations on the way are kept, so that one can go back.
+    """Settlement path: supports move evenly, look by look; saved stations on the way allow to go back.
 
     motion    whole movement of every block, zero but for the settling supports [m, rad], (n_blocks, n_dof)
     buckles   whether a state at rest does
@@ -57,7 +57,7 @@ class SettlementWay:
         self.standing = self.failing = sim.save()
 
     def begin(self) -> None:
-        """From rest under the dead loads."""
+        """Begin the settlement from rest under the dead loads."""
         self.sim.use_combined_damping()
         self.sim.set_load(0.0)
         soften_falls(self.sim, self.largest, self.chunk * self.rows)
@@ -65,7 +65,7 @@ class SettlementWay:
         self.stations[0] = self.sim.save()
 
     def go_on(self, budget: Budget) -> None:
-        """The supports move on until the next look."""
+        """Move the supports on until the next look."""
         if self.path is not None:
             way = self.path((self.done + 1) / self.rows) - self.path(self.done / self.rows)
             self.sim.move_supports(way / self.chunk)
@@ -77,7 +77,7 @@ class SettlementWay:
             self.stations[self.done] = self.sim.save()
 
     def stands(self, budget: Budget) -> bool:
-        """Whether the structure comes to rest with the supports held where they are."""
+        """Test whether the structure comes to rest with the supports fixed where they are."""
         self.sim.move_supports(np.zeros_like(self.rate))
         verdict = settle_or_fail(self.sim, 0.0, budget, measures.dead_scale(self.sim))
         found = verdict.state == "equilibrium" and not self.buckles(self.sim)
@@ -89,7 +89,7 @@ class SettlementWay:
 
     @stage
     def go_to(self, number: int, budget: Budget) -> None:
-        """To a look of before, on the same way."""
+        """Return to an earlier look, on the same way."""
         self.done = max(station for station in self.stations if station <= number)
         self.sim.restore(self.stations[self.done])
         soften_falls(self.sim, self.largest, self.chunk * self.rows)
@@ -98,7 +98,7 @@ class SettlementWay:
 
     @stage
     def bracket(self, budget: Budget) -> tuple[int, int]:
-        """The last look at which it stands, and the first at which it falls: it does in the end."""
+        """Find by bisection the last look at which it stands, and the first at which it falls: it does in the end."""
         ends = _Ends(0, self.rows)
         self.sim.stages.resumed(ends)
         while ends.high - ends.low > 1:

@@ -1,4 +1,5 @@
-"""Check of joint stiffness in a pushover whose geometry moves: whether joints ten times as soft carry the load as well.
+"""Check of joint stiffness in a pushover with large displacements: whether ten times softer joints carry the load
+as well.
 
 Joints of "auto" stiffness are the program's choice: a structure where all are is checked, one with a given kn is not.
 Closure is taken back where the structure rests (engine/rigid_joints.py), so that what is held hangs on it through the
@@ -50,12 +51,13 @@ def checked(job: Job, sim: Simulation, search: FailureLoad, resolution: float) -
 
 
 def _checkable(sim: Simulation) -> bool:
-    """Whether geometry moves over joints whose stiffness is the program's choice."""
+    """Test whether geometry moves over joints whose stiffness is the program's choice."""
     return sim.kinematics == "large" and not sim.properties.given
 
 
 def _held(sim: Simulation, loads: list[float], budget: Budget) -> float:
-    """The last of these loads, as users know them, up to which all are held one after the other; 0: none is."""
+    """Return the last of these loads, as users know them, up to which all are carried one after the other; 0: none
+    is."""
     if stand(sim, budget).state != "equilibrium":
         return 0.0
     elastic = compliance(sim, budget)[1]

@@ -1,4 +1,4 @@
-"""Trial loads: which load to try next on the way to a bracket of the failure load.
+"""Trial loads: choice of the next load on the way to a bracket of the failure load.
 
 Up in steps until one fails, back by halves until the bracket is narrow, and round loads that stay undecided: one that
 happens to lie within 1e-4 of the failure load creeps for ever.
@@ -13,7 +13,7 @@ from dem_cli.core.engine.static_settings import LoadSearchSettings
 
 @dataclass
 class TrialLoads:
-    """Bracket of the failure load that is proved so far, and the load to try next; internal multipliers."""
+    """Bracket of the failure load that is proved so far, and the next load to try; internal multipliers."""
 
     settings: LoadSearchSettings
     resolution: float  # width of the bracket, relative
@@ -33,21 +33,21 @@ class TrialLoads:
 
     @property
     def width(self) -> float:
-        """Width of the bracket that is asked for."""
+        """Requested width of the bracket."""
         return self.resolution * max(abs(self.low), self.settings.least)
 
     @property
     def closed(self) -> bool:
-        """Whether the bracket is as narrow as asked for."""
+        """Test whether the bracket is as narrow as requested."""
         return self.high is not None and self.high - self.low <= self.width
 
     @property
     def to_come(self) -> float:
-        """How many steps of the load there still are to its goal."""
+        """Return the number of load steps that remain to its goal."""
         return max(self.goal - self.low, 0.0) / self.longest if self.high is None else 0.0
 
     def next(self) -> float | None:
-        """The load to try next; None where the bracket is narrow enough, or cannot be made any narrower."""
+        """Return the next load to try; None where the bracket is narrow enough, or cannot be made any narrower."""
         if self.high is None:
             return self._upwards()
         if self.closed:
@@ -64,7 +64,7 @@ class TrialLoads:
         return above if self.high - above > nearest else None
 
     def _next_below(self) -> float | None:
-        """Once, after a jump to a level that failed: of the loads of halving, the one that closes the bracket."""
+        """Return once, after a jump to a level that failed, the load of bisection that closes the bracket."""
         leaps, self.leaps = self.leaps, False
         if self.high is None or not (leaps and self.jumped and self.high - self.low <= self.settings.leap * self.low):
             return None
@@ -86,20 +86,20 @@ class TrialLoads:
         return min(load, self.limit)
 
     def carries(self, load: float) -> None:
-        """The load is carried; where it had failed after a jump, the search goes on upwards."""
+        """Enter a load that is carried; where it had failed after a jump, the search goes on upwards."""
         if self.high is not None and load >= self.high:
             self.high, self.step, self.jumped = None, self._first_step, False
         self.low = load
         self.undecided = [other for other in self.undecided if other > load]
 
     def fails(self, load: float, for_certain: bool = False) -> None:
-        """The load fails; for_certain: whatever the step to it."""
+        """Enter a load that fails; for_certain: whatever the step to it."""
         far = self.settings.jump * self.resolution * max(abs(self.low), self.settings.least)
         self.high, self.jumped = load, not for_certain and load - self.low > far
         self.undecided = [other for other in self.undecided if other < load]
 
     def leaves(self, load: float) -> None:
-        """Neither was proved in as many steps as a trial may take."""
+        """Enter a load that was neither carried nor failed in as many steps as a trial may take."""
         if self.high is not None and load >= self.high:
             self.jumped = False  # it failed before
         else:

@@ -1,4 +1,4 @@
-"""Warm start: a state next to failure that a case asks for; the explicit solver proves it and goes on from it.
+"""Warm start: a requested state next to failure; the explicit solver proves it and goes on from it.
 
 A static solver knows where failure is: the zero-dilation path of limit.path, a state that the structure reaches from
 gravity, or the forces of limit analysis, which nothing says that it reaches. Its forces become the springs of the
@@ -25,7 +25,7 @@ CURVE = "curve"  # of displacement control
 
 
 class WarmStart(NamedTuple):
-    """A state in equilibrium."""
+    """State in equilibrium from which a search starts."""
 
     kind: str  # PATH, LIMIT or IMPLICIT
     load: float  # its multiplier, as users know it
@@ -37,7 +37,7 @@ class WarmStart(NamedTuple):
     plateau: bool = False  # the load grows no more with displacement
 
     def put_into(self, sim: Simulation) -> None:
-        """Puts the simulation into this state; what the work on the way did not store counts as friction.
+        """Put the simulation into this state; work on the way that is not stored counts as friction.
 
         Where the forces come without a way (limit analysis), what they store was put in from outside.
         """
@@ -53,7 +53,7 @@ class WarmStart(NamedTuple):
 
 
 class CurveStart(NamedTuple):
-    """The highest point of a capacity curve, as the explicit solver left it."""
+    """Highest point of a capacity curve, as the explicit solver left it."""
 
     load: float  # its multiplier, as users know it
     state: SavedState
@@ -61,12 +61,12 @@ class CurveStart(NamedTuple):
     plateau: bool = False
 
     def put_into(self, sim: Simulation) -> None:
-        """Puts the simulation into this state."""
+        """Put the simulation into the state at the highest point of the curve."""
         sim.restore(self.state)
 
 
 def find_start(job: Job, sim: Simulation, limits: RigidLimits) -> tuple[WarmStart | None, dict[str, Any]]:
-    """The start that is asked for (None: gravity), and what summary.json says of it."""
+    """Find the requested start (None: gravity), and its entries in summary.json."""
     wanted = job.request.analysis.start
     kind = GRAVITY if wanted == "auto" else wanted
     report: dict[str, Any] = {"kind": kind, "chosen": "automatically" if wanted == "auto" else "by the case"}
@@ -88,7 +88,7 @@ def find_start(job: Job, sim: Simulation, limits: RigidLimits) -> tuple[WarmStar
 
 
 def start_by_path(limits: RigidLimits, report: dict[str, Any]) -> WarmStart | None:
-    """The state at the highest load of the path, None where that says little; what is said of it goes to `report`."""
+    """Return the state at the highest load of the path, None where that says little; notes go to `report`."""
     from dem_cli.core.limit.path import OK
 
     warm_start, path = limits.job.settings.warm_start, limits.path
@@ -111,7 +111,7 @@ def start_by_path(limits: RigidLimits, report: dict[str, Any]) -> WarmStart | No
 
 
 def starts_by_history(limits: RigidLimits, report: dict[str, Any], small: bool = False) -> list[WarmStart]:
-    """The equilibria of an implicit history from gravity, upwards; none where it did not come to failure.
+    """Return the equilibria of an implicit history from gravity, upwards; none where it did not come to failure.
 
     small: in small steps of the load. What is said of it goes to `report`.
     """
@@ -146,6 +146,6 @@ def _by_limit_analysis(job: Job, limits: RigidLimits, report: dict[str, Any]) ->
 
 
 def _work(loads: list[float], displacements: list[float]) -> float:
-    """Of a load that grew from one value to the next in proportion to its displacement [J]."""
+    """Compute the work of a load that grew from one value to the next in proportion to its displacement [J]."""
     means = 0.5 * (np.array(loads[1:]) + loads[:-1])
     return float((means * np.diff(displacements)).sum())

@@ -73,4 +73,4 @@ def test_words_of_a_suite_that_was_made_for_it():
     assert verdict(found) == "meets EN 1998-1 3.2.3.1.2 (3), (4)a, (4)b, (4)c"
     fewer = made.judged([Motion(one) for one in suite(made.asked, 1)][:2])
     assert "DOES NOT MEET" in verdict(fewer)
-    assert "(4)a: 2 records, at least 3 are asked for" in verdict(fewer)
+    assert "(4)a: 2 records, at least 3 are required" in verdict(fewer)

@@ -1,1 +1,1 @@
-"""Where blocks are put, and how far they may come from there."""
+"""Placement of blocks, and their clearance: motion until gaps of the start have closed."""

@@ -26,7 +26,7 @@ class Play(NamedTuple):
 
 
 def play_of_start(tracking: JointTracking, bodies: Bodies, clearance: ClearanceSettings = DEFAULT.clearance) -> Play:
-    """How far blocks may move until profiles and gaps of the start have closed; those of fixed geometry do not."""
+    """Compute the motion of blocks until profiles and gaps of the start have closed; zero in fixed geometry."""
     model, smallest = tracking.model, tracking.smallest
     if not tracking.moves:
         return Play(np.zeros(model.n_blocks), np.zeros(model.n_blocks))
@@ -44,7 +44,7 @@ def play_of_start(tracking: JointTracking, bodies: Bodies, clearance: ClearanceS
 
 
 def gap_play(gaps: np.ndarray, width: float, n_blocks: int, clearance: ClearanceSettings = DEFAULT.clearance) -> Play:
-    """The same while joints close that are open at the start.
+    """Compute the motion of blocks while joints close that are open at the start.
 
     gaps: between faces near each other [m], (n,); width: of a typical block [m]. A block that turns into a gap takes
     along what stands on it, so that its motion is many times the gap.
@@ -62,7 +62,8 @@ def play(
     positions: np.ndarray,
     clearance: ClearanceSettings = DEFAULT.clearance,
 ) -> Play:
-    """Of every block on the way from the supports on which it can move least; joints: those of the start.
+    """Compute the play of every block, on the way from the supports on which it can move least; joints: those of
+    the start.
 
     A block that turns by θ against its neighbour takes along what stands on it. angles: microrotations of the joints
     [rad], (n_joints,); positions: centroids [m].
@@ -96,7 +97,7 @@ def play(
 
 
 def beyond(free: np.ndarray, since: np.ndarray, before: np.ndarray, now: np.ndarray) -> np.ndarray:
-    """How much of the motion of each block microrotations cannot explain [m], (n_blocks,).
+    """Compute the motion of each block that microrotations cannot explain [m], (n_blocks,).
 
     free: what they can move it, Play.moved or Play.turned times its radius; since: motion since a moment; before, now:
     distance from the place of the start, then and now. Where a block was further away than microrotations take it, it

@@ -23,24 +23,24 @@ if TYPE_CHECKING:
 
 
 def displace(sim: Simulation, blocks: np.ndarray, displacement: np.ndarray) -> None:
-    """Moves blocks where they are put [m], (d,); `find_faces` when all are in place."""
+    """Move blocks by a displacement [m], (d,); `find_faces` when all are in place."""
     sim.bodies.positions[blocks] += displacement
 
 
 def turn(sim: Simulation, blocks: np.ndarray, rotation: np.ndarray | float, about: np.ndarray) -> None:
-    """Turns blocks as one about a point (d,): counter-clockwise, in space by axis times angle (3,) [rad]."""
+    """Rotate blocks as one about a point (d,): counter-clockwise, in space by axis times angle (3,) [rad]."""
     bodies = sim.bodies
     bodies.positions[blocks] = about + turned_as_one(bodies.positions[blocks] - about, rotation)
     bodies.orientations[blocks] = turned_further(bodies.orientations[blocks], rotation)
 
 
 def throw(sim: Simulation, blocks: np.ndarray, velocity: np.ndarray) -> None:
-    """Gives blocks a velocity [m/s, rad/s], (n_dof,)."""
+    """Set the velocity of blocks [m/s, rad/s], (n_dof,)."""
     sim.bodies.velocities[blocks] = velocity
 
 
 def find_faces(sim: Simulation) -> None:
-    """Corners and joints of blocks that were displaced or turned."""
+    """Update corners and joints of blocks that were displaced or turned."""
     _follow(sim)
     sim.bodies.travel[:] = np.inf  # wherever they are now, faces are found anew
     sim.detect()
@@ -96,9 +96,10 @@ def move_to(sim: Simulation, motion: np.ndarray, shear: np.ndarray, load: float,
 def place_at_rest(
     sim: Simulation, normal: np.ndarray, shear: np.ndarray, gaps: np.ndarray, displacements: np.ndarray
 ) -> None:
-    """A state of rest found elsewhere: forces [N] and gaps [m] of all contact points, displacements of all blocks.
+    """Set a state of rest found elsewhere: forces [N] and gaps [m] of all contact points, displacements of all
+    blocks.
 
-    displacements: (n_blocks, n_dof) [m, rad]. The books start anew with `Simulation.open_books`.
+    displacements: (n_blocks, n_dof) [m, rad]. The energy balance starts anew with `Simulation.open_books`.
     """
     d, bodies = sim.model.dimension, sim.bodies
     sim.contacts.normal[:], sim.contacts.shear[:], sim.contacts.gaps[:] = normal, shear, gaps
@@ -121,7 +122,7 @@ def _move(sim: Simulation, motion: np.ndarray) -> None:
 
 
 def _follow(sim: Simulation) -> None:
-    """Takes along what goes with the blocks to where they were put: corners, turns, mobilities."""
+    """Update what moves with the blocks to their new places: corners, turns, mobilities."""
     bodies, shape = sim.bodies, sim.shape
     bodies.turns[:] = turns_of(bodies.orientations)
     if sim.model.n_modes:

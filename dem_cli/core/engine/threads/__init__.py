@@ -1,1 +1,1 @@
-"""Threads inside one run."""
+"""Threads inside one run of a large structure."""

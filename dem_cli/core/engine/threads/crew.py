@@ -1,4 +1,5 @@
-"""Threads inside one run (`dem run --threads`): how many step a large structure together, and their calls.
+"""Threads inside one run (`dem run --threads`): number of threads that step a large structure together, and their
+calls.
 
 Answers do not depend on their number, bit for bit (kernels/tiles): a summary does not name it.
 """
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Crew:
-    """Threads that simulations may step with, and the most that one was stepped with so far."""
+    """Threads that simulations may step with, and the largest number used so far."""
 
     wanted: int
     used: int = 1
@@ -30,7 +31,7 @@ _crew: ContextVar[Crew | None] = ContextVar("crew", default=None)
 
 @contextmanager
 def crew_of(threads: int) -> Iterator[Crew]:
-    """Simulations that are made inside may step with so many threads."""
+    """Let simulations that are made inside step with so many threads."""
     crew = Crew(threads)
     token = _crew.set(crew)
     try:
@@ -40,13 +41,13 @@ def crew_of(threads: int) -> Iterator[Crew]:
 
 
 def threads_wanted() -> int:
-    """How many threads a simulation may use."""
+    """Return the number of threads that a simulation may use."""
     crew = _crew.get()
     return crew.wanted if crew is not None else 1
 
 
 def called_by_all(loop: Callable, arguments: tuple[Any, ...], members: int) -> Any:
-    """One call of a compiled loop by each member of its team, which wait for each other; returns what one returns.
+    """Call a compiled loop by each member of its team, which wait for each other; returns what one returns.
 
     An interrupt, which may strike between any two lines here, leaves none of them waiting.
     """
@@ -72,7 +73,7 @@ def called_by_all(loop: Callable, arguments: tuple[Any, ...], members: int) -> A
 
 @cache
 def _pool(process: int, members: int) -> ThreadPoolExecutor:
-    """Threads that wait for calls, of one process: a forked one has none of its parent's."""
+    """Return threads that wait for calls, of one process: a forked one has none of its parent's."""
     from concurrent.futures import ThreadPoolExecutor
 
     return ThreadPoolExecutor(members, thread_name_prefix="crew")
