@@ -55,8 +55,7 @@ def hull(points: Sequence | np.ndarray) -> Polyhedron:
 
 
 def from_faces(points: Sequence | np.ndarray, loops: Sequence[Sequence[int]]) -> Polyhedron:
-    """Build the convex polyhedron with given corners (n, 3) and faces, each the numbers of its corners (from 0) around
-    it.
+    """Build the convex polyhedron with given corners (n, 3) and faces: loops of numbers of corners, from 0.
 
     Faces may run either way round; those that lie in one plane become one. Raises ValueError, with the face or corner:
     fewer than four of them, numbers that are no corner, not plane, not convex, not closed, no volume.
@@ -136,7 +135,7 @@ def all_moved(solids: Sequence[Polyhedron], angle: float, shift: Sequence[float]
 
 
 def newell(loop: np.ndarray) -> np.ndarray:
-    """Compute the area of a face times its normal from its corners (n, 3) [m²]: exact for plane faces, else the mean
+    """Compute area times normal of a face from its corners (n, 3) [m²]: exact where it is plane, else the mean
     normal.
     """
     arms = loop - loop[0]
@@ -169,8 +168,7 @@ def _checked(points: Sequence | np.ndarray) -> np.ndarray:
 
 
 def _planes(points: np.ndarray, gap: float) -> tuple[np.ndarray, np.ndarray]:
-    """Compute outward normals (m, 3) and heights over the origin (m,) of the faces of a hull; facets in one plane are
-    one.
+    """Compute outward normals (m, 3) and heights over the origin (m,) of the faces of a hull, one for each plane.
 
     The largest facet of each plane says where it is: Qhull leaves slivers of no area, whose planes are arbitrary.
     """
@@ -227,8 +225,7 @@ def _loop_checked(points: np.ndarray, loop: Sequence[int], number: int) -> np.nd
 
 
 def _outwards(points: np.ndarray, loop: np.ndarray, number: int) -> np.ndarray:
-    """Orient a face counter-clockwise seen from outside. Raises ValueError: not plane, not convex.
-    """
+    """Orient a face counter-clockwise seen from outside. Raises ValueError: not plane, not convex."""
     gap = COPLANAR * size(points)
     area = newell(points[loop])
     length = float(norm(area))

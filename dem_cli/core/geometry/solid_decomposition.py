@@ -33,8 +33,8 @@ class Sides(NamedTuple):
 
 
 def convex_pieces(sides: Sides) -> list[np.ndarray]:
-    """Divide a solid into convex pieces, each given by its corners (n, 3). Raises ValueError: too many, or they do not
-    fill it. Raises ValueError: too many, or they do not fill it.
+    """Divide a solid into convex pieces, each given by its corners (n, 3). Raises ValueError where there are too many,
+    or they do not fill it.
     """
     size = float(norm(np.ptp(sides.points, axis=0)))
     rough = roughness(sides)
@@ -66,9 +66,7 @@ def convex_pieces(sides: Sides) -> list[np.ndarray]:
 
 
 def roughness(sides: Sides) -> float:
-    """Compute the largest distance of corners from the planes of the sides that they belong to [m]: 0 where a file is
-    exact.
-    """
+    """Compute the largest distance of corners from the planes of their sides [m]: 0 where a file is exact."""
     own = np.repeat(sides.planes, 3)
     places = sides.points[sides.triangles.ravel()]
     return float(np.abs((places * sides.normals[own]).sum(axis=1) - sides.heights[own]).max())
@@ -102,9 +100,7 @@ def hull_corners(points: np.ndarray) -> np.ndarray:
 
 
 def _best(sides: Sides, faces: list[tuple[int, np.ndarray]], gap: float) -> int | None:
-    """Choose the side whose plane cuts the fewest others through the same piece; None where no plane goes through
-    it.
-    """
+    """Choose the side whose plane cuts the fewest others through the same piece; None where no plane does."""
     chosen, least = None, np.inf
     for k in dict.fromkeys(k for k, _ in faces):
         cuts = 0
@@ -164,9 +160,7 @@ def _width(piece: np.ndarray) -> float:
 
 
 def _winding(sides: Sides, point: np.ndarray) -> float:
-    """Compute the winding number of the surface about a point: 1 inside, 0 outside; by Van Oosterom and Strackee
-    1983.
-    """
+    """Compute the winding number of the surface about a point: 1 inside, 0 outside; Van Oosterom and Strackee 1983."""
     arms = sides.points[sides.triangles] - point
     lengths = np.linalg.norm(arms, axis=2)
     a, b, c = arms[:, 0], arms[:, 1], arms[:, 2]

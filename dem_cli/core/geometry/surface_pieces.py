@@ -17,8 +17,7 @@ GAUSS = 0.5 / np.sqrt(3.0)  # of a segment, from its middle: two points are exac
 
 
 def kept(piece: np.ndarray, normal: np.ndarray, offset: float) -> np.ndarray:
-    """Clip a piece by a half-space; (0, d) where nothing is left. Sutherland and Hodgman (1974).
-    """
+    """Clip a piece by a half-space; (0, d) where nothing is left. Sutherland and Hodgman (1974)."""
     heights = product(piece, normal) - offset
     heights[np.abs(heights) <= ON_PLANE * np.ptp(piece, axis=0).sum()] = 0.0
     if (heights <= 0.0).all():
