@@ -13,9 +13,7 @@ def chance(*words: str | int) -> float:
 
 
 def lognormal_factor(variation: float, *words: str | int) -> float:
-    """Draw a log-normal factor above 0 with mean 1 and coefficient of variation `variation` [-] from these words
-    alone.
-    """
+    """Draw a log-normal factor above 0 with mean 1 and coefficient of variation `variation` [-] from these words."""
     from statistics import NormalDist
 
     variance = math.log1p(variation**2)

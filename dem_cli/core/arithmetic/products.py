@@ -8,9 +8,7 @@ import numpy as np
 
 
 def product(a: Any, b: Any) -> Any:
-    """Multiply full arrays or lists of numbers as a @ b, a number where both are vectors; sparse matrices have their
-    own `@`.
-    """
+    """Multiply full arrays as a @ b, a number where both are vectors; sparse matrices have their own `@`."""
     a, b = np.asarray(a), np.asarray(b)
     if b.ndim == 1:
         return np.einsum("...j,j->...", a, b) if a.ndim > 1 else np.einsum("j,j->", a, b)

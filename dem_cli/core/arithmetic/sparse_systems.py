@@ -17,7 +17,7 @@ ITERATIONS = 12  # of an inverse iteration: a shape, not a number of many digits
 class SymmetricFactors:
     """Factors L D Lᵀ of a sparse symmetric matrix, without pivoting.
 
-    Raises np.linalg.LinAlgError where a pivot is nothing.
+    Raises np.linalg.LinAlgError where a pivot is zero.
     """
 
     def __init__(self, matrix: sparray | spmatrix) -> None:
@@ -54,7 +54,7 @@ class SymmetricFactors:
 def solved_symmetric(matrix: sparray | spmatrix, right: np.ndarray) -> np.ndarray:
     """Solve A x = b for a sparse symmetric positive definite A, (n,).
 
-    Raises np.linalg.LinAlgError where a pivot is nothing.
+    Raises np.linalg.LinAlgError where a pivot is zero.
     """
     return SymmetricFactors(matrix).solved(right)
 

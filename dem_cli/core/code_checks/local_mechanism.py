@@ -30,8 +30,7 @@ LEAST_FALL = 0.8  # of the peak: a curve that ends above has no zero that could 
 
 
 def zero_of(displacements: np.ndarray, loads: np.ndarray) -> tuple[float, bool] | None:
-    """Find the displacement at which a falling curve reaches zero [m], and whether it lies beyond its end; None where
-    unknown.
+    """Find the displacement at which a falling curve reaches zero [m], and whether that is beyond its end; else None.
 
     Beyond its end it goes on in the straight line through its end and the middle of its way down.
     """

@@ -31,9 +31,7 @@ class Demand(NamedTuple):
 
 
 def demand(yield_displacement: float, yield_acceleration: float, spectrum: TargetSpectrum, corner: float) -> Demand:
-    """Compute the demand on an oscillator that yields at a displacement [m] and acceleration [m/s2]; corner: T_C
-    [s].
-    """
+    """Compute the demand on an oscillator by its yield displacement [m] and acceleration [m/s2]; corner: T_C [s]."""
     period = secant_period(yield_displacement, yield_acceleration)
     acceleration = float(spectrum(period))
     elastic = elastic_displacement(period, acceleration)

@@ -1,4 +1,4 @@
-"""The contract of a joint law.
+"""Interface of a joint law.
 
 A law is one plain scalar function, compiled into the contact loop:
 
@@ -33,7 +33,7 @@ JointTable = TypeVar("JointTable", bound=Parameters)
 
 @dataclass(frozen=True)
 class Law(Generic[JointTable]):
-    """A registered joint law, with the table of its parameters."""
+    """Joint law as it is registered, with the table of its parameters."""
 
     name: str  # `law` in the case file
     parameters: type[JointTable]  # the [joints.*] table
@@ -67,9 +67,9 @@ class Law(Generic[JointTable]):
     source: str = ""  # where the law is published
 
     def n_memory(self, dimension: int) -> int:
-        """Columns of `memory`."""
+        """Number of columns of `memory` of a contact point."""
         return self.scalars + self.vectors * (dimension - 1)
 
     def of(self, table: JointTable) -> Law:
-        """The law itself, or the variant of it that the table asks for."""
+        """Return the law itself, or the variant of it that this table selects."""
         return self.variant(table) or self
