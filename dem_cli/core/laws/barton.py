@@ -3,7 +3,7 @@
     |s| ≤ N tan φ,   φ = JRC log10(JCS / σn) + φr,   φr ≤ φ ≤ φ_max
 
 σn = N / A is the stress of the point. The angle grows without end as the stress goes to zero: it is cut off, as is
-usual in rock mechanics, at 70° unless the case says otherwise.
+usual in rock mechanics, at 70° unless the table says otherwise.
 """
 
 from __future__ import annotations

@@ -28,9 +28,7 @@ class ElasticJoint(StiffJoint):
 
     @property
     def bends(self) -> bool:
-        """False: a joint that never opens has the bending stiffness of a rectangle with three points. Its bending
-        stiffness is that of a rectangle with three points.
-        """
+        """False: a joint that never opens has the bending stiffness of a rectangle with three points."""
         return False
 
 

@@ -125,7 +125,7 @@ def fracture(gap, slide, shear, kn, ks, parameters, joint, memory, point):
         trial = scale(limit / size, trial)
         normal = max(normal, -strength * parameters[joint, 2] * area)
     memory[point, STRENGTH] = strength if strength > GONE else 0.0
-    # A damaged point gives back along its secant what the books hold for lost: they look at it in every step.
+    # A damaged point gives back along its secant what the energy balance counts as lost: report a loss in every step.
     return normal, trial, slips or 0.0 < before < 1.0 or strength < before
 
 

@@ -60,7 +60,7 @@ class Law(Generic[JointTable]):
     vectors: int = 0  # vectors along the tangents that it remembers beside them
     intact: tuple[float, ...] = ()  # first scalars of points that touch at the start; all others start from zero
     # Carries tension, or deforms for good across the joint: called for open points too, and the work that its
-    # normal springs lose is booked as well.
+    # normal springs lose is counted in the energy balance as well.
     bonded: bool = False
     rates: tuple[int, ...] = ()  # columns that are velocities [m/s]: handed to the law as displacement per step
     variant: Callable[[JointTable], Law | None] = lambda table: None  # another law that this table asks for

@@ -1,4 +1,4 @@
-"""Bars as they are drawn: their tables in the case, the pieces that lie in blocks, and the nodes and elements of these.
+"""Bars as they are drawn: their input tables, their pieces in blocks, and the nodes and elements of these.
 
 What holds them and how they act: links/bar.py.
 """
@@ -16,7 +16,7 @@ FINE = 0.2  # μ l of elements by default
 
 
 class BarProfile(Parameters):
-    """[bars.NAME]: a kind of reinforcing bar: section, steel, bond."""
+    """Input table [bars.NAME]: a kind of reinforcing bar: section, steel, bond."""
 
     area: Positive = parameter(description="cross-section; in 2D of all bars in the thickness [m2]", examples=[1.13e-4])
     young: Positive = parameter(description="Young's modulus [Pa]", examples=[2.0e11])
@@ -39,17 +39,17 @@ class BarProfile(Parameters):
 
     @property
     def decay(self) -> float:
-        """μ = √(kb/EA): along 1/μ the force in a bar that is pulled falls to 1/e [1/m]."""
+        """Decay rate of the bar force by bond, μ = √(kb/EA): along 1/μ the force of a pulled bar falls to 1/e [1/m]."""
         return math.sqrt(self.bond_stiffness / (self.young * self.area))
 
     @property
     def largest(self) -> float:
-        """Its yield force [N]."""
+        """Yield force of the bar [N]."""
         return math.inf if self.yield_stress is None else self.yield_stress * self.area
 
 
 class Reinforcement(Parameters):
-    """[[reinforcement]]: a bar along a polyline through blocks, held by bond in each.
+    """Input table [[reinforcement]]: a bar along a polyline through blocks, held by bond in each.
 
     Its path lies in blocks as they were drawn; these take it along.
     """
@@ -69,7 +69,7 @@ class Reinforcement(Parameters):
     )
 
     def check(self) -> None:
-        """Raises KeyProblem where two corners are one point."""
+        """Check that the corners of the path are different points; raises KeyProblem."""
         super().check()
         for i, (a, b) in enumerate(zip(self.path, self.path[1:])):
             if len(a) == len(b) and math.dist(a, b) == 0.0:
@@ -77,14 +77,14 @@ class Reinforcement(Parameters):
 
 
 class BarPiece(NamedTuple):
-    """A straight part of a bar in one block."""
+    """Straight part of a bar in one block."""
 
     block: int
     ends: np.ndarray  # from the centroid of the block [m], (2, d)
 
 
 class DrawnBar(NamedTuple):
-    """A bar as it was drawn: what it is, and its pieces in the blocks one after another."""
+    """Bar as it was drawn: its profile, and its pieces in the blocks one after another."""
 
     profile: BarProfile
     element: float  # greatest length of an element [m]
@@ -93,7 +93,7 @@ class DrawnBar(NamedTuple):
 
 
 class BarNodes(NamedTuple):
-    """The nodes of one bar, one behind another, in the middles of equal parts of its pieces."""
+    """Nodes of one bar, one behind another, in the middles of equal parts of its pieces."""
 
     blocks: np.ndarray  # in which they lie, (n,)
     arms: np.ndarray  # from its centroid [m], (n, d)
@@ -103,7 +103,7 @@ class BarNodes(NamedTuple):
 
 
 def nodes_of(bar: DrawnBar) -> BarNodes:
-    """Nodes of a bar, no farther apart than its elements may be long."""
+    """Place the nodes of a bar, no farther apart than its elements may be long."""
     blocks, arms, along, reach, places, upto = [], [], [], [], [], 0.0
     for piece in bar.pieces:
         way = piece.ends[1] - piece.ends[0]
@@ -122,7 +122,9 @@ def nodes_of(bar: DrawnBar) -> BarNodes:
 
 
 def elements_of(bar: DrawnBar, nodes: BarNodes) -> tuple[np.ndarray, np.ndarray]:
-    """Axial stiffness of the elements of one bar [N/m], and which of them cross a joint, (n_nodes + 1,) each."""
+    """Compute the axial stiffness of the elements of one bar [N/m], and which of them cross a joint, (n_nodes + 1,)
+    each.
+    """
     rigidity, reach = bar.profile.young * bar.profile.area, nodes.reach
     stiffness = np.zeros(len(reach) + 1)
     stiffness[1:-1] = rigidity / (0.5 * (reach[:-1] + reach[1:]))
