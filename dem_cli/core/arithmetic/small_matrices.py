@@ -134,7 +134,7 @@ def singular(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def least_squares(matrix: np.ndarray, right: np.ndarray, least: float = 1e-15) -> np.ndarray:
     """Solve the least-squares problem min |A x − b| for the shortest x; A (m, k), b (m,).
 
-    least: share of the largest singular value, up to which another is none.
+    least: share of the largest singular value, up to which another counts as zero.
     """
     left, sizes, axes = singular(matrix)
     kept = sizes > least * sizes.max(initial=0.0)

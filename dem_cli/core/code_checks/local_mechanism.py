@@ -26,7 +26,7 @@ from dem_cli.core.motion.eurocode import TargetSpectrum
 
 ULTIMATE = 0.4  # of the displacement at which the curve is zero
 SECANT = 0.4  # of the ultimate displacement: where the secant goes through
-LEAST_FALL = 0.8  # of the peak: a curve that ends above has no zero that could be told
+LEAST_FALL = 0.8  # of the peak: a curve that ends above has no zero that could be found
 
 
 def zero_of(displacements: np.ndarray, loads: np.ndarray) -> tuple[float, bool] | None:

@@ -169,7 +169,7 @@ def outline(ordered: np.ndarray, gap: float) -> list[int]:
     """Find the corners of the strict convex hull of points (n, 2) sorted by y then x, by the monotone chain; returns
     their numbers.
 
-    Counter-clockwise; points within `gap` [m] of the line between their neighbours are none.
+    Counter-clockwise; points within `gap` [m] of the line between their neighbours are no corners.
     """
 
     def chain(numbers: range) -> list[int]:

@@ -16,7 +16,7 @@ from dem_cli.core.arithmetic.products import norm, product
 from dem_cli.core.arithmetic.small_matrices import determinants
 from dem_cli.core.geometry.polyhedron import newell
 
-ROUND_OFF = 1e-9  # of the size: points that are one, heights that are none
+ROUND_OFF = 1e-9  # of the size: points that coincide, heights that are zero
 THIN = 1e-6  # of the size: pieces of a side that are narrower are not cut along
 SAME_VOLUME = 1e-9  # relative: two pieces whose hull is no larger are convex together
 MOST_PIECES = 200

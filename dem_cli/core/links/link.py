@@ -1,6 +1,6 @@
 """Interface of a kind of link: elements between material points of blocks, whose forces follow those of the joints.
 
-A kind is a table of the case file, a record of arrays, and a compiled function:
+A kind is an input table, a record of arrays, and a compiled function:
 
     forces(arrays, bodies, like, like_rotation) -> work lost [J]
 

@@ -71,8 +71,8 @@ def geometric(links: Iterable[LinkArrays], bodies: Any, fixed: np.ndarray, n_dof
 
 
 def gershgorin(springs: Springs, weights: np.ndarray, fixed: np.ndarray) -> np.ndarray:
-    """Compute the Gershgorin sums Σ_c k_c (|b_ci|/w_i) Σ_j |b_cj| w_j of springs; result and weights w: (n_blocks,
-    n_dof).
+    """Compute Gershgorin sums Σ_c k_c (|b_ci|/w_i) Σ_j |b_cj| w_j of springs, (n_blocks, n_dof), as are the weights
+    w.
     """
     found = np.zeros_like(weights)
     rows = np.abs(springs.motion)  # 0 of fixed points, so that what block these point to is no matter
