@@ -54,7 +54,7 @@ class CalleeLibrary(JITCodeLibrary):
 
     @property
     def codegen(self) -> Any:
-        """Return the code generator, with dummy memory in the place of machine code."""
+        """Return dummy memory in the place of the engine that would run the code."""
         return _NoProcess
 
 

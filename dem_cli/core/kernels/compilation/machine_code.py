@@ -127,9 +127,7 @@ def literal_unroll(function: Any, name: str) -> None:
 
 
 def compiled(function: Callable) -> Callable:
-    """Compile a function, or load its machine code from disk. IEEE division, no fast-math. IEEE division, no
-    fast-math.
-    """
+    """Compile a function, or load its machine code from disk. IEEE division, no fast-math."""
     found: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True, **KERNEL)(function)
     found._cache = KernelCache(function)  # as its `enable_caching` does with numba's own
     return cast(Callable, found)
