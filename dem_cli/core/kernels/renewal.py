@@ -2,7 +2,8 @@
 memory.
 
 Elastic slip and overlap are what a point remembers: where its area changes its forces go with it, and the energy that
-is made or lost by that is booked (Contacts.exchanged). A new point has the traction of the nearest one before.
+is made or lost by that is added to the energy balance (Contacts.exchanged). A new point has the traction of the nearest
+one before.
 """
 
 from __future__ import annotations

@@ -75,7 +75,7 @@ class ProfileShape(Parameters):
 
 
 class Profile(ProfileShape):
-    """Table [joints.NAME.profile]: contact surfaces that are not plane."""
+    """[joints.NAME.profile]: contact surfaces that are not plane."""
 
     aperture: Positive | tuple[NonNegative, Positive] = parameter(
         description="distance from the line through the ends of the polygon to its lowest point [m]", examples=[1e-4]

@@ -20,7 +20,7 @@ from dem_cli.declarations import Parameters, parameter
 
 
 class Softening(Parameters):
-    """Table `softening` of a Coulomb joint: friction that falls with the slip; constant, then linear, then constant."""
+    """softening of a Coulomb joint: friction that falls with the slip; constant, then linear, then constant."""
 
     residual: float = parameter(
         ge=0.0, le=1.0, description="share β of the friction that is left in the end [-]", examples=[0.8]

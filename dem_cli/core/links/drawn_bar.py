@@ -16,7 +16,7 @@ FINE = 0.2  # μ l of elements by default
 
 
 class BarProfile(Parameters):
-    """Input table [bars.NAME]: a kind of reinforcing bar: section, steel, bond."""
+    """[bars.NAME]: a kind of reinforcing bar: section, steel, bond."""
 
     area: Positive = parameter(description="cross-section; in 2D of all bars in the thickness [m2]", examples=[1.13e-4])
     young: Positive = parameter(description="Young's modulus [Pa]", examples=[2.0e11])
@@ -49,7 +49,7 @@ class BarProfile(Parameters):
 
 
 class Reinforcement(Parameters):
-    """Input table [[reinforcement]]: a bar along a polyline through blocks, held by bond in each.
+    """[[reinforcement]]: a bar along a polyline through blocks, held by bond in each.
 
     Its path lies in blocks as they were drawn; these take it along.
     """

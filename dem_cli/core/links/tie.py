@@ -36,7 +36,7 @@ from dem_cli.declarations import KeyProblem, Name, NonNegative, Parameters, Posi
 
 
 class Tie(Parameters):
-    """Input table [[tie]]: a rod or cable between points of two blocks, or from a block to a fixed point.
+    """[[tie]]: a rod or cable between points of two blocks, or from a block to a fixed point.
 
     Its ends are points of the structure as it was drawn; blocks take them along.
     """
