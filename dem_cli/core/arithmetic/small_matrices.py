@@ -143,9 +143,7 @@ def least_squares(matrix: np.ndarray, right: np.ndarray, least: float = 1e-15) -
 
 
 def _turns(off: np.ndarray, first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compute cosine and sine of the smaller Jacobi rotation that cancels `off` between two diagonal entries, (n,)
-    each.
-    """
+    """Cosine and sine of the smaller Jacobi rotation that cancels `off` between two diagonal entries, (n,) each."""
     doubled = np.where(off == 0.0, 1.0, 2.0 * off)
     cotangent = (second - first) / doubled
     tangent = np.where(cotangent < 0.0, -1.0, 1.0) / (np.abs(cotangent) + np.sqrt(1.0 + cotangent**2))

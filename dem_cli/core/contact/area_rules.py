@@ -105,9 +105,7 @@ def _diagonals(polygons: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _scattered(polygons: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the points of a whole section of parallelograms (m, 4, …) without corners: places (m, points, …),
-    shares.
-    """
+    """Points of a whole section of parallelograms (m, 4, …) without corners: places (m, points, …), shares."""
     x, y, shares = section_points()
     along, up = polygons[:, 1] - polygons[:, 0], polygons[:, 3] - polygons[:, 0]
     at = polygons.mean(axis=1)[:, None] + 0.5 * (x[:, None] * along[:, None] + y[:, None] * up[:, None])
@@ -116,9 +114,7 @@ def _scattered(polygons: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 @cache
 def section_points() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute places from −1 to 1 along both sides and shares of the area of the points of a whole section but its
-    corners.
-    """
+    """Places from −1 to 1 along both sides and shares of the area of the points of a whole section but its corners."""
     places, shares = np.array(IN_SECTION)[:, :2], np.array(IN_SECTION)[:, 2]
     alike = np.where(places[:, 0] == places[:, 1], 4.0, 8.0)
     # The last of them get what the digits leave off the second moments.
@@ -132,9 +128,7 @@ def section_points() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _grid(polygons: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Compute n × n Gauss–Lobatto points of parallelograms (m, 4, …) but their corners: places (m, n² − 4, …),
-    shares.
-    """
+    """Gauss–Lobatto points, n × n, of parallelograms (m, 4, …) but their corners: places (m, n² − 4, …), shares."""
     places, weights = lobatto(n)
     x, y = (each.ravel() for each in np.meshgrid(places, places, indexing="ij"))
     inner = ~(np.isin(x, places[[0, -1]]) & np.isin(y, places[[0, -1]]))
@@ -148,9 +142,7 @@ RULES = {LEAST: _diagonals, SECTION: _scattered}  # of parallelograms, by points
 
 
 def _fan(polygons: np.ndarray, centres: np.ndarray, m: int) -> tuple[np.ndarray, np.ndarray]:
-    """Compute points of convex polygons (n, k, …) but their corners, by triangles about places within: places,
-    shares.
-    """
+    """Points of convex polygons (n, k, …) but their corners, by triangles about places within: places, shares."""
     n = len(polygons)
     one = polygons - centres[:, None]
     two = np.roll(one, -1, axis=1)

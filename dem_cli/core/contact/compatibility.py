@@ -80,9 +80,7 @@ def compatibility(model: Model, joints: Joints, strained: Bodies | None = None) 
 
 
 def strain_motion(model: Model, joints: Joints, bodies: Bodies) -> np.ndarray:
-    """Compute ∂(motion of b against a)/∂(amplitudes of a, of b) where blocks deform, (n_points, d directions, 2 blocks,
-    m).
-    """
+    """Derivatives ∂(motion of b against a)/∂(amplitudes of a, of b) where blocks deform, (n_points, d, 2 blocks, m)."""
     d, blocks = model.dimension, joints.blocks[joints.owners]
     arms = joints.points[:, None] - bodies.positions[blocks]
     turned = rotated_basis(bodies.gradients.reshape(-1, d, d))[blocks]

@@ -170,9 +170,7 @@ class JointProperties(NamedTuple):
 
 
 class JointGeometry(Protocol):
-    """Interface of the geometry of joints in a narrow phase, one record of arrays for each dimension
-    (kernels/records.py).
-    """
+    """Interface of the geometry of joints, one record of arrays for each dimension (kernels/records.py)."""
 
     def __iter__(self) -> Iterator[np.ndarray]:
         """Iterate over all arrays."""

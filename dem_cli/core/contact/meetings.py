@@ -33,8 +33,8 @@ class Meetings(NamedTuple):
 
     @property
     def widths(self) -> np.ndarray:
-        """Width of each contact: twice the area of overlaps of faces over their perimeter; of lone contacts their reach
-        [m], (n,).
+        """Width of each contact [m], (n,): of faces twice the overlap area over its perimeter; of lone contacts their
+        reach.
         """
         sides = np.linalg.norm(self.places[following(self.starts)] - self.places, axis=1)
         perimeters, lone = np.bincount(self.owners, sides, len(self.kinds)), self.kinds != FACES

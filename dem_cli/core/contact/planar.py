@@ -233,9 +233,7 @@ def profile_fault(
 
 
 def corner_shares(joints: Joints, geometry: PlanarGeometry, corners: np.ndarray) -> np.ndarray:
-    """Compute the weight of edge a in the normal of each point: 1 but at ends near or beyond a corner of a,
-    (n_points,).
-    """
+    """Weight of edge a in the normal of each point: 1 but at ends near or beyond a corner of a, (n_points,)."""
     a0, a1, b0, b1 = (corners[geometry.edges[:, i]] for i in range(4))
     along_a, along_b = (a1 - a0) * geometry.scales[:, [1]], (b1 - b0) * geometry.scales[:, [2]]
     both = along_a - along_b

@@ -56,8 +56,8 @@ def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
 def _facing(
     model: Model, corners: np.ndarray, pairs: np.ndarray, reach: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute for pairs of parts their distance, the faces that look at each other, and what else they share
-    (kernels/separation.py).
+    """Distance of pairs of parts, the faces that look at each other, and other areas that they share
+    (separation.py).
     """
     solids = polyhedra(model, corners)
     faces, separation, beside = np.zeros((len(pairs), 2), np.int64), np.empty(len(pairs)), np.zeros(len(pairs))
@@ -203,18 +203,14 @@ def _with_rules(found: Meetings, shares: np.ndarray, sides: np.ndarray) -> tuple
 
 
 def rules_over(found: Meetings, sides: np.ndarray) -> InnerPoints:
-    """Compute quadrature points within the outlines of joints, so many along each side (n,), with gaps [m] in column
-    3.
-    """
+    """Quadrature points within the outlines of joints, so many along each side (n,), with gaps [m] in column 3."""
     outlines = np.column_stack([found.places, found.gaps])
     centres = np.column_stack([found.measures[:, CENTRE : CENTRE + 3], found.measures[:, GAP]])
     return inner_points(outlines, found.starts, centres, sides)
 
 
 def _areas(model: Model, found: Meetings) -> np.ndarray:
-    """Compute areas of contacts [m²], (n,): of overlaps their own, of lone contacts LONE of the median face for each
-    point.
-    """
+    """Areas of contacts [m²], (n,): of overlaps their own, of lone contacts LONE of the median face for each point."""
     lone = LONE * median_face(model) * np.diff(found.starts)
     return np.where(found.kinds != FACES, lone, found.measures[:, AREA])
 
@@ -256,9 +252,7 @@ def facing(model: Model, faces: Faces, corners: np.ndarray, sine: float, least: 
 
 
 def open_gaps(model: Model, faces: Faces, corners: np.ndarray, steepest: float, bare: float) -> np.ndarray:
-    """Compute the largest gap at the corners of overlaps of faces that look at each other [m], (n,); 0: none, or
-    overlap.
-    """
+    """Largest gap at the corners of overlaps of faces that look at each other [m], (n,); 0: none, or overlap."""
     if not len(faces.parts):
         return np.zeros(0)
     found = meetings(model, faces, corners)

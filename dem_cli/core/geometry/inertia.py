@@ -38,9 +38,7 @@ def along_principal(spins: np.ndarray, axes: np.ndarray, turns: np.ndarray) -> n
 
 
 def gyration(spins: np.ndarray, moments: np.ndarray, axes: np.ndarray, turns: np.ndarray) -> np.ndarray:
-    """Compute gyroscopic angular accelerations without any torque, along the world axes [rad/s²], (n, r): −J⁻¹ (ω × J
-    ω).
-    """
+    """Gyroscopic angular accelerations without any torque, along the world axes [rad/s²], (n, r): −J⁻¹ (ω × J ω)."""
     if spins.shape[1] == 1:
         return np.zeros_like(spins)
     own = along_principal(spins, axes, turns)

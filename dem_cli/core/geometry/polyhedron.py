@@ -135,9 +135,7 @@ def all_moved(solids: Sequence[Polyhedron], angle: float, shift: Sequence[float]
 
 
 def newell(loop: np.ndarray) -> np.ndarray:
-    """Compute area times normal of a face from its corners (n, 3) [m²]: exact where it is plane, else the mean
-    normal.
-    """
+    """Area times normal of a face from its corners (n, 3) [m²]: exact where it is plane, else the mean normal."""
     arms = loop - loop[0]
     return 0.5 * np.cross(arms, np.roll(arms, -1, axis=0)).sum(axis=0)
 

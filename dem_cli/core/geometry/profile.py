@@ -50,9 +50,7 @@ def cut(places: np.ndarray, rises: np.ndarray, low: float, high: float) -> tuple
 
 
 def slopes(places: np.ndarray, rises: np.ndarray) -> np.ndarray:
-    """Compute the slope of each side of a profile against the one the joint rests on [-], (n,); it grows from left to
-    right.
-    """
+    """Slope of each side of a profile against the one the joint rests on [-], (n,); it grows from left to right."""
     return np.diff(rises) / np.diff(places)
 
 

@@ -91,9 +91,7 @@ def along_frames(stored: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def tangents_of(normals: np.ndarray, first: np.ndarray) -> list[np.ndarray]:
-    """Compute d − 1 tangents (n, d) of each normal: in the plane turned by +90°, in space `first` and normal ×
-    first.
-    """
+    """Tangents of each normal, d − 1 of (n, d): in the plane turned by +90°, in space `first` and normal × first."""
     return [across(normals)] if normals.shape[1] == 2 else [first, np.cross(normals, first)]
 
 
@@ -130,9 +128,7 @@ def _after(second: np.ndarray, first: np.ndarray) -> np.ndarray:
 
 
 def angles_of(orientations: np.ndarray) -> np.ndarray:
-    """Compute the angle by which each block has turned [rad], (n,): with its sign in the plane, from 0 to π in
-    space.
-    """
+    """Angle by which each block has turned [rad], (n,): with its sign in the plane, from 0 to π in space."""
     if orientations.shape[1] == 1:
         return orientations[:, 0]
     if orientations.shape[1] == 3:
@@ -141,9 +137,7 @@ def angles_of(orientations: np.ndarray) -> np.ndarray:
 
 
 def leans_of(orientations: np.ndarray) -> np.ndarray:
-    """Compute the tilt of each block from the upright [rad], (n,): the angle in the plane, in space that of z, from 0
-    to π.
-    """
+    """Tilt of each block from the upright [rad], (n,): the angle in the plane, in space that of z, from 0 to π."""
     if orientations.shape[1] == 1:
         return np.abs(orientations[:, 0])
     _, x, y, _ = quaternions(orientations).T
@@ -158,9 +152,7 @@ def largest_angle_between(one: np.ndarray, other: np.ndarray) -> float:
 
 
 def rotation_vectors(orientations: np.ndarray) -> np.ndarray:
-    """Compute axis times angle of each rotation [rad], (n, r): in the plane the angle, in space the shorter way
-    round.
-    """
+    """Axis times angle of each rotation [rad], (n, r): in the plane the angle, in space the shorter way round."""
     if orientations.shape[1] < 4:
         return orientations
     shorter = orientations * np.where(orientations[:, :1] < 0.0, -1.0, 1.0)

@@ -48,9 +48,7 @@ def face_areas(vertices: np.ndarray, topology: Topology) -> np.ndarray:
 
 
 def properties_of_all(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> VolumeProperties:
-    """Compute volume properties of m polyhedra; polyhedron p has the corners vertices[part_starts[p]:part_starts[p +
-    1]].
-    """
+    """Volume properties of m polyhedra; polyhedron p has the corners vertices[part_starts[p]:part_starts[p + 1]]."""
     counts, n = np.diff(part_starts), len(part_starts) - 1
     origin = np.add.reduceat(vertices, part_starts[:-1], axis=0) / counts[:, None]
     local = vertices - np.repeat(origin, counts, axis=0)

@@ -16,9 +16,7 @@ def volumes(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -
 
 
 def widths(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> np.ndarray:
-    """Compute the narrowest extent of each polyhedron across a face: of a box its shortest side, of a slab its
-    thickness.
-    """
+    """Narrowest extent of each polyhedron across a face: of a box its shortest side, of a slab its thickness."""
     depths, first = _depths(vertices, part_starts, topology)
     return np.minimum.reduceat(np.maximum.reduceat(depths, first), topology.part_faces[:-1])
 
@@ -30,9 +28,7 @@ def are_convex(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology
 
 
 def _depths(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the depth of each corner of a part behind each of its faces [m], face by face; and where each face
-    begins.
-    """
+    """Depth of each corner of a part behind each of its faces [m], face by face; and where each face begins."""
     along = normals(vertices, topology)
     counts = np.diff(part_starts)[topology.face_parts]
     faces = np.repeat(np.arange(topology.n_faces), counts)

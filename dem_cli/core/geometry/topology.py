@@ -71,9 +71,7 @@ def topology_of_polygons(part_starts: np.ndarray) -> Topology:
 
 
 def topology_of_polyhedra(solids: Sequence[Polyhedron]) -> Topology:
-    """Build the topology of polyhedra whose corners follow each other in one array; those with the same `faces` are
-    done once.
-    """
+    """Build the topology of polyhedra whose corners follow each other in one array; equal `faces` are done once."""
     kinds: dict[int, tuple[np.ndarray, np.ndarray]] = {}
     for solid in solids:
         if id(solid.faces) not in kinds:

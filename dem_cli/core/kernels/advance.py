@@ -43,9 +43,7 @@ from dem_cli.core.kernels.vec import in_a_row
 
 @inline
 def along_live_load(forces, dead_loads, live_loads, inverse_masses, dead):
-    """Compute the force along the live load, q·M⁻¹(F + f0), which a live factor λ brings to zero: q·M⁻¹(F + f0 + λ q) =
-    0.
-    """
+    """Force along the live load, q·M⁻¹(F + f0), which a live factor λ brings to zero: q·M⁻¹(F + f0 + λ q) = 0."""
     total = 0.0
     for i in range(forces.size):
         total += live_loads[i] * inverse_masses[i] * (forces[i] + dead * dead_loads[i])
@@ -84,9 +82,7 @@ def local_drag(unbalanced, previous, velocity, damp, damp_change):
 def driven_flow(
     velocities, forces, previous, dead_loads, live_loads, inverse_masses, dead, live, damp, damp_change, dt
 ):  # fmt: skip
-    """Compute the velocity along the live load, q·v, after the step with damping, before the impulse that sets the
-    rate.
-    """
+    """Velocity along the live load, q·v, after the step with damping, before the impulse that sets the rate."""
     flow = 0.0
     for i in range(forces.size):
         q = live_loads[i]

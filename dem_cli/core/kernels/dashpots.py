@@ -77,9 +77,7 @@ def touch(states, seen, slips, point):
 
 @always_inline
 def closed_share(gap, opening, dt):
-    """Compute the share of the step before in which a point that has met was closed, at the speed at which it
-    closed.
-    """
+    """Share of the step before in which a point that has met was closed, at the speed at which it closed."""
     return min(max(gap / (opening * dt), 0.0), 1.0)
 
 
@@ -91,9 +89,7 @@ def begin_joint(dampers, joint, n_rows):
 
 @always_inline
 def end_joint(dampers, joint, n_rows, n_active):
-    """Add a joint with rows to the joints to sweep; returns how many there are. Returns how many joints there are to
-    sweep.
-    """
+    """Add a joint with rows to the joints to sweep; returns how many joints there are to sweep."""
     if n_rows > dampers.packed[joint]:
         dampers.active[n_active] = joint
         n_active += 1

@@ -184,9 +184,7 @@ def _drawn_in(slide, spin, centre, share):
 
 
 def torsion_of(twist, rub, centre, share):
-    """Compute the moment of all forces of a joint, where those along it act at c + share × (r − c); twist: as if at
-    r.
-    """
+    """Moment of all forces of a joint, where those along it act at c + share × (r − c); twist: as if at r."""
     if len(twist) == 1:
         return twist
     about = centre[0] * rub[1] - centre[1] * rub[0]
@@ -224,9 +222,7 @@ def _reach_of(joints, point, side, centre, like):
 
 
 def rates_at(frame, reach_a, reach_b, relative, spin_a, spin_b):
-    """Compute the speed of opening and sliding of a point whose blocks move and turn [m/s]; relative: of centroid b
-    against a.
-    """
+    """Speed of opening and sliding of a point whose blocks move and turn [m/s]; relative: of centroid b against a."""
     if len(frame) == 2:
         normal, along = components(frame, relative)
         normal_a, along_a = turn(reach_a, spin_a)
@@ -252,9 +248,7 @@ def _rates_at(frame, reach_a, reach_b, relative, spin_a, spin_b):
 
 
 def torque_at(reach, force, normal_part, tangent_parts):
-    """Compute the moment of a force at a point about a centroid: by its components along the frame in 2D, by itself in
-    3D.
-    """
+    """Moment of a force at a point about a centroid: by its components along the frame in 2D, by itself in 3D."""
     if len(force) == 2:
         return add_torques(reach, normal_part, tangent_parts, (0.0,))
     return moment(reach, force)

@@ -173,9 +173,7 @@ def share_area(work, count, area, gx, gy, weights, first):
 
 @inline
 def _turn_at(work, i, k, j):
-    """Compute the sine of the turn of the outline in row 2 at corner k, from i and on to j, and the lengths of both
-    sides.
-    """
+    """Sine of the turn of the outline in row 2 at corner k, from i and on to j, and the lengths of both sides."""
     ax, ay = work[2, k, 0] - work[2, i, 0], work[2, k, 1] - work[2, i, 1]
     bx, by = work[2, j, 0] - work[2, k, 0], work[2, j, 1] - work[2, k, 1]
     before, after = math.sqrt(ax * ax + ay * ay), math.sqrt(bx * bx + by * by)
@@ -184,9 +182,7 @@ def _turn_at(work, i, k, j):
 
 @always_inline
 def fades_by(sine):
-    """Compute the share of its area that a corner of an outline hands to its neighbours, by the sine of its turn
-    [-].
-    """
+    """Share of its area that a corner of an outline hands to its neighbours, by the sine of its turn [-]."""
     return max(1.0 - sine / FADES, 0.0)
 
 

@@ -81,9 +81,7 @@ def refresh_lengths(scales, joint, a0, a1, b0, b1):
 
 @always_inline
 def overlap_of(a0, a1, b0, b1, length_a, per_a, per_b, blend):
-    """Compute the overlap of two edges: its length, zero where it is narrow, the gaps of its ends, what `place_end`
-    needs.
-    """
+    """Overlap of two edges: its length, zero where it is narrow, the gaps of its ends, what `place_end` needs."""
     ta = ((a1[0] - a0[0]) * per_a, (a1[1] - a0[1]) * per_a)
     tb = ((b1[0] - b0[0]) * per_b, (b1[1] - b0[1]) * per_b)
     # How far the edge of b ends inside that of a, at both ends, along a and along b; then the clipped overlap.
@@ -103,9 +101,7 @@ def overlap_of(a0, a1, b0, b1, length_a, per_a, per_b, blend):
 
 @always_inline
 def _other_depth(inside, along, cotangent):
-    """Compute the depth of a corner behind the next edge, from the depth behind this edge and the way along it from the
-    corner.
-    """
+    """Depth of a corner behind the next edge, from the depth behind this edge and the way along it from the corner."""
     return max((along - inside * cotangent) / math.sqrt(1.0 + cotangent * cotangent), 0.0)
 
 

@@ -53,9 +53,7 @@ def _along(start, end, t):
 
 @always_inline
 def _end(twice_inside, blend, corner_a, corner_b, ta, ts, on_side):
-    """Compute the gap at an end of the joint, and its share as in planar_geometry.py, with a side of the chain as edge
-    of b.
-    """
+    """Gap at an end of the joint, and its share as in planar_geometry.py, with a side of the chain as edge of b."""
     share = share_of(twice_inside, sharper(blend, ta, ts))
     gap = _outside(corner_b, corner_a, ta) if share >= 0.5 else _outside(corner_a, on_side, ts)
     return gap, share
@@ -257,7 +255,5 @@ _place_points = make_profiled_forces(_no_law, places=True)
 
 @kernel
 def measure_profiles(joints, geometry, contacts, bodies):
-    """Compute frames, levers, places and gaps of all points from the corners of the blocks, for detection and
-    records.
-    """
+    """Frames, levers, places and gaps of all points from the corners of the blocks, for detection and records."""
     _place_points(joints, geometry, contacts, bodies, 0.0, (0.0, 0.0), (0.0,))

@@ -106,9 +106,7 @@ def _highest_edges(solids, a, b):
 
 @inline
 def _off_axis(solids, face, axis, sign):
-    """Compute the squared difference between the normal of a face and sign × axis: of small angles, the angle
-    squared.
-    """
+    """Squared difference between the normal of a face and sign × axis: of small angles, the angle squared."""
     n = row3(solids.normals, face)
     off = (n[0] - sign * axis[0], n[1] - sign * axis[1], n[2] - sign * axis[2])
     return dot(off, off)

@@ -44,9 +44,7 @@ GAINS = {2: PLANAR_WIDTH, 3: WIDTH}  # columns by dimension
 
 
 def meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
-    """Determine states and gains of all points before the kick, and the impulses of the step before; returns how many
-    have met.
-    """
+    """Determine states and gains of all points before the kick, and the impulses before; returns how many have met."""
     found = meet_in_plane if len(like) == 2 else meet_in_space
     return found(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation)
 
@@ -79,9 +77,7 @@ def _resist(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, 
 
 @always_inline
 def _rates_by_impulses(arm, mobility):
-    """Compute the rate at the tip of an arm by a unit impulse there, of the turning of its block alone: xx xy xz yy yz
-    zz.
-    """
+    """Rate at the tip of an arm by a unit impulse there, of the turning of its block alone: xx xy xz yy yz zz."""
     x, y, z = arm
     at_x = axpy(z, mobility[1], scale(-y, mobility[2]))
     at_y = axpy(x, mobility[2], scale(-z, mobility[0]))

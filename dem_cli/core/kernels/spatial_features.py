@@ -169,9 +169,7 @@ def crossing_in_faces(vertices, ends, point, share, normal_a, normal_b, middle, 
 
 @always_inline
 def crossing_alone(vertices, ends, point, sign):
-    """Compute normal, gap and place of two edges that cross outside of face joints; sign: which way their normal
-    goes.
-    """
+    """Normal, gap and place of two edges that cross outside of face joints; sign: which way their normal goes."""
     on_a, on_b = row3(vertices, ends[point, 0]), row3(vertices, ends[point, 2])
     d, e = minus3(row3(vertices, ends[point, 1]), on_a), minus3(row3(vertices, ends[point, 3]), on_b)
     c, r = cross3(d, e), minus3(on_b, on_a)
@@ -188,9 +186,7 @@ def crossing_alone(vertices, ends, point, sign):
 
 @always_inline
 def feature_of(geometry, bodies, joint, point, a, b, frame):
-    """Compute normal from a to b, gap [m] and place of one contact point; frame: normals of both faces and of the
-    joint.
-    """
+    """Normal from a to b, gap [m] and place of one contact point; frame: normals of both faces and of the joint."""
     vertices, corners, kind, scales = bodies.corners, geometry.corners, geometry.types[point], geometry.scales
     normal_a, normal_b, middle = frame
     band, in_faces = scales[joint, 1], geometry.kinds[joint] == FACES

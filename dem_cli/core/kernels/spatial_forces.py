@@ -85,9 +85,7 @@ def _keeps(geometry, bodies, joint, a, b):
 
 @inline
 def pressed_in_space(places, normals, stiffness, first, last, like):
-    """Compute the centre of pressure of the points from first to last of a joint [m]; where none press, that of an even
-    one.
-    """
+    """Centre of pressure of the points from first to last of a joint [m]; where none press, that of an even one."""
     push, centre = 0.0, scale(0.0, like)
     for p in range(first, last):
         point = np.uint64(p)

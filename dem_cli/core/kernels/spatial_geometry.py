@@ -39,9 +39,7 @@ def face_origin(solids, face):
 
 @inline
 def first_tangent(solids, face, normal):
-    """Compute a unit vector across the normal, along the first edge of a face: fixed in its part, whatever overlaps
-    there.
-    """
+    """A unit vector across the normal, along the first edge of a face: fixed in its part, whatever overlaps there."""
     first = solids.face_starts[face]
     start = row3(solids.corners, solids.face_corners[first])
     along = minus3(row3(solids.corners, solids.face_corners[first + 1]), start)
@@ -281,9 +279,7 @@ def _rim_joint(solids, face, other, sign, size, work, out, joint, first):
 
 @inline
 def _nearest_on(p, u, q, v):
-    """Compute shares along two segments p + s u and q + t v where they are nearest to each other; Ericson 2005,
-    5.1.9.
-    """
+    """Shares along two segments p + s u and q + t v where they are nearest to each other; Ericson 2005, 5.1.9."""
     uu, vv, uv = dot(u, u), dot(v, v), dot(u, v)
     arm = minus3(p, q)
     c, f = dot(u, arm), dot(v, arm)

@@ -112,9 +112,7 @@ def _perimeter(work, count):
 
 @always_inline
 def _clipped(geometry, vertices, joint, frame, along, work):
-    """Compute the overlap of the two faces of a joint in row 2 of `work`, with areas; returns corners, area, and its
-    centroid.
-    """
+    """Overlap of the two faces of a joint in row 2 of `work`, with areas; returns corners, area, and its centroid."""
     face_a, face_b = geometry.faces[joint, 0], geometry.faces[joint, 1]
     middle = frame[2]
     t1, t2 = tangents3(middle, along)

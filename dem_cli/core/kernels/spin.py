@@ -38,9 +38,7 @@ def half_turn(spin, dt):
 
 @inline
 def midpoint(spin, moments, dt):
-    """Compute the mean spin over a step without torque, along the principal axes, and the vector of its turn
-    (`half_turn`).
-    """
+    """Mean spin over a step without torque, along the principal axes, and the vector of its turn (`half_turn`)."""
     a = (moments[1] - moments[2]) / moments[0]
     b = (moments[2] - moments[0]) / moments[1]
     c = (moments[0] - moments[1]) / moments[2]

@@ -153,9 +153,7 @@ def columns(table, kn):
 
 
 def pressed(parameters, overlaps, memory, kn):
-    """Compute normal forces kn × overlap [N]; in tension along the secant to the largest opening, up to the rest of ft
-    A.
-    """
+    """Normal forces kn × overlap [N]; in tension along the secant to the largest opening, up to the rest of ft A."""
     elastic = memory[:, STRENGTH] * parameters[:, 2] / parameters[:, 0]  # of the opening at the peak [m]
     opened = memory[:, OPENED] + elastic
     left = np.divide(elastic, opened, out=np.zeros(len(kn)), where=opened > 0.0)

@@ -196,9 +196,7 @@ def broken(parameters, kn) -> Envelope:
 
 
 def _bond(strengths, parameters, kn) -> Envelope:
-    """Make a strength envelope; strengths: c, ft [Pa] and μ, (n_points, 3). A joint that stops dilating collapses
-    without dilation.
-    """
+    """Strength envelope of a bond; strengths: c, ft [Pa] and μ, (n_points, 3). Dilation that ends is left out."""
     area, endless = kn / parameters[:, 0], np.isinf(parameters[:, 8])
     cohesion, tension, friction = strengths.T
     return envelope(

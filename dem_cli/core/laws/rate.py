@@ -44,9 +44,7 @@ class RateJoint(FrictionJoint):
 
 @inline
 def rate_dependent(gap, slide, shear, kn, ks, parameters, joint, memory, point):
-    """Compute the forces of a Coulomb contact point with speed-dependent friction; memory: speed of slip, 0 where it
-    sticks.
-    """
+    """Forces of a Coulomb contact point with speed-dependent friction; memory: speed of slip, 0 where it sticks."""
     if gap >= 0.0:
         memory[point, 0] = 0.0
         return 0.0, scale(0.0, shear), True
@@ -65,9 +63,7 @@ def rate_dependent(gap, slide, shear, kn, ks, parameters, joint, memory, point):
 
 
 def shear_limit(parameters, normal, memory, kn):
-    """Compute the shear strength [N]: friction at the speed, or the static one where the point sticks, × normal
-    force.
-    """
+    """Shear strength [N]: friction at the speed, or the static one where the point sticks, × normal force."""
     return np.where(memory[:, 0] > 0.0, memory[:, 0], parameters[:, 0]) * normal
 
 

@@ -107,9 +107,7 @@ class Bars(NamedTuple):
         return int(self.first[number]), int(self.first[number + 1]), len(self.slips)
 
     def axial(self, bodies: Any = None) -> Springs:
-        """Return elastic springs between the blocks of each bar, as many as joints: a factor of the condensed
-        stiffness.
-        """
+        """Elastic springs between the blocks of each bar, as many as joints: a factor of the condensed stiffness."""
         axes, _, arms = self.spans.lines(bodies)
         rows = self.spans.motion(axes, arms)
         widest, n_dof = max((len(self._factor(b)) for b in range(self.n_drawn)), default=0) + 1, rows.shape[2]
@@ -199,9 +197,7 @@ class Bars(NamedTuple):
         return 0.5 * float((self.state[:, FORCE] ** 2 / np.where(self.stiffness > 0.0, self.stiffness, 1.0)).sum())
 
     def follow(self, motion: np.ndarray, bodies: Any) -> None:
-        """Update slips and forces of bars after small displacements of all blocks, (n_blocks, n_dof); elastic, up to
-        the limits.
-        """
+        """Update slips and elastic forces of bars after small displacements of all blocks, (n_blocks, n_dof)."""
         axes, _, arms = self.spans.lines(bodies)
         opened = (self.spans.motion(axes, arms) * motion[self.blocks]).sum(axis=(1, 2))
         n = len(self.slips)
@@ -223,7 +219,7 @@ class Bars(NamedTuple):
         return float(self.node_places[last] + 0.5 * self.reach[last])
 
     def reading(self, number: int, quantity: str, at: float) -> LinkReading:
-        """Return a monitor's weights: slip, linear between the nodes of a block, or force, linear between middles of
+        """Return monitor weights: slip, linear between the nodes of a block, or force, linear between middles of
         elements.
         """
         begin, end, n = self.rows(number)

@@ -24,9 +24,7 @@ class Chain(NamedTuple):
     crossing: np.ndarray  # elements that cross joints, (n_joints,)
 
     def slips(self, openings: np.ndarray) -> np.ndarray:
-        """Compute slips of the nodes against their blocks [m], (n, ...), from openings of the joints, (n_joints,
-        ...).
-        """
+        """Slips of the nodes against their blocks [m], (n, ...), from openings of the joints, (n_joints, ...)."""
         pull = np.zeros((len(self.bonds), *openings.shape[1:]))
         stiffness = self.elements[self.crossing].reshape(-1, *[1] * (openings.ndim - 1))
         np.add.at(pull, self.crossing - 1, stiffness * openings)
@@ -42,9 +40,7 @@ class Chain(NamedTuple):
         return found
 
     def condensed(self) -> np.ndarray:
-        """Compute the condensed stiffness K: forces across the joints from their openings [N/m], (n_joints,
-        n_joints).
-        """
+        """Condensed stiffness K: forces across the joints from their openings [N/m], (n_joints, n_joints)."""
         units = np.eye(len(self.crossing))
         across = self.stretches(units, self.slips(units))[self.crossing]
         found = self.elements[self.crossing][:, None] * across

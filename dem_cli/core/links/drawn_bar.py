@@ -122,9 +122,7 @@ def nodes_of(bar: DrawnBar) -> BarNodes:
 
 
 def elements_of(bar: DrawnBar, nodes: BarNodes) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the axial stiffness of the elements of one bar [N/m], and which of them cross a joint, (n_nodes + 1,)
-    each.
-    """
+    """Axial stiffness of the elements of one bar [N/m], and which of them cross a joint, (n_nodes + 1,) each."""
     rigidity, reach = bar.profile.young * bar.profile.area, nodes.reach
     stiffness = np.zeros(len(reach) + 1)
     stiffness[1:-1] = rigidity / (0.5 * (reach[:-1] + reach[1:]))

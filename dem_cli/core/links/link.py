@@ -93,14 +93,10 @@ class LinkArrays(Protocol):
         """Compute the geometric stiffness of the present forces, (n, 2·n_dof, 2·n_dof); rows as in `blocks`."""
 
     def bounded(self) -> tuple[Springs, np.ndarray]:
-        """Return springs for limit analysis where they were drawn, with the least and largest force of each [N], (n,
-        2).
-        """
+        """Springs for limit analysis where they were drawn, with the least and largest force of each [N], (n, 2)."""
 
     def only_pulling(self) -> TensionSprings | None:
-        """Return springs that only pull between two blocks, where they were drawn; None where a link does more than
-        that.
-        """
+        """Springs that only pull between two blocks, where they were drawn; None where a link does more than that."""
 
     def yields(self) -> bool:
         """Test whether any link has a force limit at which it stretches or slides for good."""

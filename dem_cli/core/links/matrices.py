@@ -71,9 +71,7 @@ def geometric(links: Iterable[LinkArrays], bodies: Any, fixed: np.ndarray, n_dof
 
 
 def gershgorin(springs: Springs, weights: np.ndarray, fixed: np.ndarray) -> np.ndarray:
-    """Compute Gershgorin sums Σ_c k_c (|b_ci|/w_i) Σ_j |b_cj| w_j of springs, (n_blocks, n_dof), as are the weights
-    w.
-    """
+    """Gershgorin sums Σ_c k_c (|b_ci|/w_i) Σ_j |b_cj| w_j of springs, (n_blocks, n_dof), as are the weights w."""
     found = np.zeros_like(weights)
     rows = np.abs(springs.motion)  # 0 of fixed points, so that what block these point to is no matter
     reach = (rows * (weights * ~fixed[:, None])[springs.blocks]).sum(axis=(1, 2))
@@ -100,9 +98,7 @@ def stiffest(links: Iterable[LinkArrays]) -> float:
 
 
 def reading_of(links: Iterable[LinkArrays], number: int, quantity: str, at: float) -> LinkReading:
-    """Return what a monitor reads of one link, by its number among all, in the rows of all states one behind
-    another.
-    """
+    """Reading of one link by a monitor, by its number among all, in the rows of all states one behind another."""
     rows = 0
     for link in links:
         if number < link.n_drawn:

@@ -60,9 +60,7 @@ class TensionPoints(NamedTuple):
 
     @property
     def longest_elastic(self) -> float:
-        """Compute the longest elastic elongation of any tie, from its first force to its largest, where that is
-        finite.
-        """
+        """Longest elastic elongation of any tie, from its first force to its largest, where that is finite."""
         ends = np.isfinite(self.most)
         return float(((self.most - self.first) / self.stiffness)[ends].max(initial=0.0))
 

@@ -67,9 +67,7 @@ class Door:
             return made, self.way
 
     def fails(self, way: Any, made: Any, arguments: tuple[Any, ...], error: Exception) -> bool:
-        """Test whether an error of a call comes from its compilation; if so, kernels are compiled by plain numba from
-        now on.
-        """
+        """Test whether an error of a call comes from its compilation; if so, plain numba compiles from now on."""
         with self.lock:
             if self._is_plain(way) or isinstance(error, DemError | MemoryError):
                 return False

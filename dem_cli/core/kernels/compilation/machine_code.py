@@ -134,9 +134,7 @@ def compiled(function: Callable) -> Callable:
 
 
 def bound(kernel: Any) -> Callable:
-    """Return the code that a kernel ran for its last arguments, without a check of types; the kernel where there are
-    several.
-    """
+    """Code that a kernel ran for its last arguments, without a check of types; the kernel where there are several."""
     overloads = list(kernel.overloads.values())
     return cast(Callable, overloads[0].entry_point) if len(overloads) == 1 else cast(Callable, kernel)
 

@@ -146,9 +146,7 @@ def _share_in_fan(joints, contacts, first, last):
 
 @inline
 def share_pressure(joints, contacts, joint):
-    """Compute into `contacts.lumped` the gaps at which points of a joint carry their force [m]: their own, or
-    shares.
-    """
+    """Set in `contacts.lumped` the gaps at which points of a joint carry their force [m]: their own, or shares."""
     first, last = joints.starts[joint], joints.starts[joint + 1]
     gaps, shares = contacts.gaps, contacts.lumped
     if joints.integrated[joint] == NOT_INTEGRATED:

@@ -46,9 +46,7 @@ def store_bends(bodies, shape):
 
 @inline
 def resist_bending(bodies, shape):
-    """Compute forces on the quadratic modes, into `forces`: of the contacts, less those of the block's own
-    elasticity.
-    """
+    """Forces on the quadratic modes, into `forces`: of the contacts, less those of the block's own elasticity."""
     shapes, forces, modes, stiffness = shape.bends, bodies.forces, bodies.modes, shape.mode_stiffness
     first, before = forces.shape[1] - N_QUADRATIC, modes.shape[1] - N_QUADRATIC
     for number in range(shapes.shape[0]):

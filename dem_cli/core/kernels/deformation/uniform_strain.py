@@ -35,9 +35,7 @@ def _planar_strain(amplitudes, row, first, per_radius, like):
 
 
 def _spatial_strain(amplitudes, row, first, per_radius, like):
-    """Compute the strain in space from its modes: all directions alike, x against y, both against z, shear yz, zx,
-    xy.
-    """
+    """Strain in space from its modes: all directions alike, x against y, both against z, shear yz, zx, xy."""
     even, flat = per_radius * amplitudes[row, first], per_radius * amplitudes[row, first + 1]
     long = per_radius * amplitudes[row, first + 2]
     yz, zx = per_radius * amplitudes[row, first + 3], per_radius * amplitudes[row, first + 4]
@@ -98,9 +96,7 @@ def stretch(bodies, shape, like, moves):
 
 @inline
 def resist(bodies, shape, like, moves):
-    """Compute forces on the modes, into `forces`: of the contacts by their dyads, less those of the block's own
-    elasticity.
-    """
+    """Forces on the modes, into `forces`: of the contacts by their dyads, less those of the block's own elasticity."""
     stiffness, forces, modes = shape.mode_stiffness, bodies.forces, bodies.modes
     first = forces.shape[1] - stiffness.shape[1]
     for number in range(stiffness.shape[0]):

@@ -269,9 +269,7 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
 
     @inline
     def press_pairs(tiles, begin, held, push, motion, before, dt, like, like_rotation):
-        """Compute forces of a tile of joints with two points: the sums of press_slots in one loop, so that they stay in
-        registers.
-        """
+        """Compute the forces of press_slots for joints with two points, in one loop, so that they stay in registers."""
         d, r = len(like), len(like_rotation)
         D, R, T = np.uint64(d) * ROW, np.uint64(r) * ROW, np.uint64(d - 1) * ROW
         A, S = (TWO if d == 2 else np.uint64(9)) * ROW, D + ROW
@@ -371,9 +369,7 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
 
     @inline
     def press(tiles, velocities, ring, member, members, first, last, dt, like, like_rotation):
-        """Compute forces of the tiles from first to last, by one thread of several; adds their friction work to `lost`
-        [J].
-        """
+        """Forces of the tiles from first to last, by one thread of several; adds their friction work to `lost` [J]."""
         of_motion = np.uint64(len(like) + 2 * len(like_rotation)) * ROW
         motions, lost = np.uint64(member * (tiles.moves.size // members)), tiles.lost
         room, marked = member * (tiles.work.size // members), member * (tiles.marks.size // members)
