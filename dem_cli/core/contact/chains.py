@@ -55,7 +55,9 @@ def made_chains(model: Model, faces: Faces, corners: np.ndarray, properties: Joi
 def come_back(
     chains: Chains, faces: Faces, edges: np.ndarray, corners: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Select first point of each joint, profile and shares of all points; only joints of the start keep theirs."""
+    """Select first point of each joint, profile and shares of all points: joints of the start keep theirs, others are
+    plane.
+    """
     known = same_rows(chains.faces, faces.faces)
     stay = np.flatnonzero(known >= 0)
     counts = np.full(len(known), 2)

@@ -197,7 +197,9 @@ class Bars(NamedTuple):
         return 0.5 * float((self.state[:, FORCE] ** 2 / np.where(self.stiffness > 0.0, self.stiffness, 1.0)).sum())
 
     def follow(self, motion: np.ndarray, bodies: Any) -> None:
-        """Update slips and elastic forces of bars after small displacements of all blocks, (n_blocks, n_dof)."""
+        """Update slips and forces of bars after small displacements of all blocks, (n_blocks, n_dof); elastic, up to
+        the limits.
+        """
         axes, _, arms = self.spans.lines(bodies)
         opened = (self.spans.motion(axes, arms) * motion[self.blocks]).sum(axis=(1, 2))
         n = len(self.slips)

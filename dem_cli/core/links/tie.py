@@ -203,7 +203,9 @@ class Ties(NamedTuple):
         return 0.5 * float((self.state[:, FORCE] ** 2 / self.stiffness).sum())
 
     def follow(self, motion: np.ndarray, bodies: Any) -> None:
-        """Update elongations and forces of ties after small displacements of all blocks, (n_blocks, n_dof)."""
+        """Update elongations and forces of ties after small displacements of all blocks, (n_blocks, n_dof), which grow
+        evenly.
+        """
         springs, (least, most) = self.axial(bodies), self.limits.T
         self.state[:, STRETCH] += (springs.motion * motion[springs.blocks]).sum(axis=(1, 2))
         force = springs.stiffness * (self.state[:, STRETCH] - self.state[:, PLASTIC]) + self.prestress
