@@ -16,7 +16,7 @@ DIGITS = 9  # far more than an answer has, far fewer than round-off touches
 
 
 def _each(function: Callable[..., float], n_arguments: int = 1) -> Callable[..., Any]:
-    """The function of all numbers of arrays, or of a number."""
+    """Make a function of a number apply to all numbers of arrays."""
     of_all = np.frompyfunc(function, n_arguments, 1)
 
     def of(*values: Any) -> Any:
@@ -40,7 +40,7 @@ arctan2, power = _each(math.atan2, 2), _each(math.pow, 2)
 
 
 def geometric(low: float, high: float, count: int) -> np.ndarray:
-    """Numbers from low to high, each so many times the last; the ends are exact, (count,)."""
+    """Make a geometric series of `count` numbers from low to high; the ends are exact, (count,)."""
     found = low * power(high / low, np.linspace(0.0, 1.0, count))
     found[-1:] = high
     found[:1] = low
@@ -48,7 +48,7 @@ def geometric(low: float, high: float, count: int) -> np.ndarray:
 
 
 def agreed(values: Any, digits: int = DIGITS) -> Any:
-    """Numbers rounded to so many significant digits: one number for all processors of what comes out of LAPACK.
+    """Round numbers to so many significant digits, so that results of LAPACK agree on all processors.
 
     Two results that are 1e-15 apart, in parts of themselves, still round to different numbers once in a million times.
     """
@@ -58,6 +58,6 @@ def agreed(values: Any, digits: int = DIGITS) -> Any:
 
 
 def agreed_beside(values: np.ndarray, largest: float) -> np.ndarray:
-    """Numbers rounded to the last of the agreed digits of the largest of them."""
+    """Round numbers to the last of the agreed digits of the largest of them."""
     unit = agreed(largest)
     return np.round(values / unit, DIGITS) * unit + 0.0 if unit else values  # no −0.0

@@ -8,7 +8,7 @@ import numpy as np
 
 
 def product(a: Any, b: Any) -> Any:
-    """a @ b of full arrays or lists of numbers, a number where both are vectors; sparse matrices have their own `@`."""
+    """Multiply full arrays as a @ b, a number where both are vectors; sparse matrices have their own `@`."""
     a, b = np.asarray(a), np.asarray(b)
     if b.ndim == 1:
         return np.einsum("...j,j->...", a, b) if a.ndim > 1 else np.einsum("j,j->", a, b)
@@ -16,6 +16,6 @@ def product(a: Any, b: Any) -> Any:
 
 
 def norm(vector: Any) -> np.float64:
-    """Length of one vector; of an array with more axes the root of the sum of all squares."""
+    """Compute the length of one vector; for an array with more axes the root of the sum of all squares."""
     flat = np.ravel(vector)
     return np.sqrt(product(flat, flat))

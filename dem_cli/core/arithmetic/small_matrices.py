@@ -14,7 +14,7 @@ SQUARE = 1e-15  # and of the lengths of two columns
 
 
 def solved(matrices: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """X of A X = B by elimination with row pivots; A (..., n, n), B (..., n, k).
+    """Solve A X = B by elimination with row pivots; A (..., n, n), B (..., n, k).
 
     Raises np.linalg.LinAlgError where a matrix is singular.
     """
@@ -40,12 +40,12 @@ def solved(matrices: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 
 def inverse(matrices: np.ndarray) -> np.ndarray:
-    """Inverse of each matrix, (..., n, n). Raises np.linalg.LinAlgError where one is singular."""
+    """Invert each matrix, (..., n, n). Raises np.linalg.LinAlgError where one is singular."""
     return solved(matrices, np.eye(matrices.shape[-1]))
 
 
 def solved_tridiagonal(diagonal: np.ndarray, beside: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """x of A x = b for one positive definite A of three diagonals; diagonal (n,), beside (n − 1,), b (n, ...)."""
+    """Solve A x = b for one positive definite tridiagonal A; diagonal (n,), beside (n − 1,), b (n, ...)."""
     pivots, found = diagonal.astype(float), right.astype(float)
     for i in range(1, len(pivots)):
         share = beside[i - 1] / pivots[i - 1]
@@ -59,7 +59,7 @@ def solved_tridiagonal(diagonal: np.ndarray, beside: np.ndarray, right: np.ndarr
 
 
 def determinants(matrices: np.ndarray) -> np.ndarray:
-    """Determinants of matrices (..., 2, 2) or (..., 3, 3), written out."""
+    """Compute determinants of matrices (..., 2, 2) or (..., 3, 3), written out."""
     if matrices.shape[-1] == 2:
         return matrices[..., 0, 0] * matrices[..., 1, 1] - matrices[..., 0, 1] * matrices[..., 1, 0]
     crossed = np.cross(matrices[..., 1, :], matrices[..., 2, :])
@@ -67,7 +67,7 @@ def determinants(matrices: np.ndarray) -> np.ndarray:
 
 
 def root(matrix: np.ndarray) -> np.ndarray:
-    """L of a positive definite A = L Lᵀ, lower triangular (Cholesky), (n, n)."""
+    """Compute the Cholesky factor L of a positive definite A = L Lᵀ, lower triangular, (n, n)."""
     found, left = np.zeros_like(matrix), matrix.copy()
     for k in range(len(matrix)):
         found[k:, k] = left[k:, k] / np.sqrt(left[k, k])
@@ -76,7 +76,7 @@ def root(matrix: np.ndarray) -> np.ndarray:
 
 
 def diagonalised(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues of symmetric matrices, ascending, (..., n), and their vectors as columns, (..., n, n).
+    """Compute eigenvalues of symmetric matrices, ascending, (..., n), and eigenvectors as columns, (..., n, n).
 
     Jacobi's rotations, row by row (Golub and Van Loan, Matrix Computations, 8.5).
     """
@@ -105,7 +105,8 @@ def diagonalised(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def singular(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """U, s and V of A = U diag(s) Vᵀ, descending; U (m, k), s (k,), V (k, k); columns of U are 0 where s is.
+    """Compute the singular value decomposition A = U diag(s) Vᵀ, descending; U (m, k), s (k,), V (k, k); columns of U
+    are 0 where s is.
 
     Jacobi's rotations of one side (Hestenes; Golub and Van Loan, 8.6), exact for small singular values as well.
     """
@@ -131,9 +132,9 @@ def singular(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def least_squares(matrix: np.ndarray, right: np.ndarray, least: float = 1e-15) -> np.ndarray:
-    """x of the smallest |A x − b|, and of these the shortest; A (m, k), b (m,).
+    """Solve the least-squares problem min |A x − b| for the shortest x; A (m, k), b (m,).
 
-    least: share of the largest singular value, up to which another is none.
+    least: share of the largest singular value, up to which another counts as zero.
     """
     left, sizes, axes = singular(matrix)
     kept = sizes > least * sizes.max(initial=0.0)
@@ -142,7 +143,7 @@ def least_squares(matrix: np.ndarray, right: np.ndarray, least: float = 1e-15) -
 
 
 def _turns(off: np.ndarray, first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cosine and sine of the smaller angle that takes `off` away between two diagonal entries, (n,) each."""
+    """Cosine and sine of the smaller Jacobi rotation that cancels `off` between two diagonal entries, (n,) each."""
     doubled = np.where(off == 0.0, 1.0, 2.0 * off)
     cotangent = (second - first) / doubled
     tangent = np.where(cotangent < 0.0, -1.0, 1.0) / (np.abs(cotangent) + np.sqrt(1.0 + cotangent**2))
@@ -152,7 +153,7 @@ def _turns(off: np.ndarray, first: np.ndarray, second: np.ndarray) -> tuple[np.n
 
 
 def _rotate(matrices: np.ndarray, p: int, q: int, cosine: np.ndarray, sine: np.ndarray) -> None:
-    """Columns p and q of each matrix (n, m, k) into each other, in place."""
+    """Rotate columns p and q of each matrix (n, m, k) into each other, in place."""
     one, two = matrices[:, :, p].copy(), matrices[:, :, q].copy()
     matrices[:, :, p] = cosine[:, None] * one - sine[:, None] * two
     matrices[:, :, q] = sine[:, None] * one + cosine[:, None] * two

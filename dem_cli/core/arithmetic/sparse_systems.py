@@ -1,4 +1,4 @@
-"""Sparse symmetric linear systems, without SuperLU and its BLAS."""
+"""Solution of sparse symmetric linear systems, without SuperLU and its BLAS."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ITERATIONS = 12  # of an inverse iteration: a shape, not a number of many digits
 class SymmetricFactors:
     """Factors L D Lᵀ of a sparse symmetric matrix, without pivoting.
 
-    Raises np.linalg.LinAlgError where a pivot is nothing.
+    Raises np.linalg.LinAlgError where a pivot is zero.
     """
 
     def __init__(self, matrix: sparray | spmatrix) -> None:
@@ -39,11 +39,11 @@ class SymmetricFactors:
 
     @property
     def negative(self) -> int:
-        """How many eigenvalues are negative: as many as pivots, by Sylvester's law of inertia."""
+        """Count the negative eigenvalues: as many as negative pivots, by Sylvester's law of inertia."""
         return int((self.factors[-1] < 0.0).sum())
 
     def solved(self, right: np.ndarray) -> np.ndarray:
-        """x of A x = b, (n,)."""
+        """Solve A x = b with these factors, (n,)."""
         found = np.empty(len(right))
         x = right[self.order].astype(float)
         solve_symmetric(self.factors, x)
@@ -52,15 +52,16 @@ class SymmetricFactors:
 
 
 def solved_symmetric(matrix: sparray | spmatrix, right: np.ndarray) -> np.ndarray:
-    """x of A x = b for a sparse symmetric A that is positive definite, (n,).
+    """Solve A x = b for a sparse symmetric positive definite A, (n,).
 
-    Raises np.linalg.LinAlgError where a pivot is nothing.
+    Raises np.linalg.LinAlgError where a pivot is zero.
     """
     return SymmetricFactors(matrix).solved(right)
 
 
 def most_negative(matrix: sparray | spmatrix, least: float) -> np.ndarray | None:
-    """The vector of the lowest eigenvalue of a sparse symmetric matrix where that is below −least, (n,); else None.
+    """Find the eigenvector of the lowest eigenvalue of a sparse symmetric matrix where that is below −least, (n,); else
+    None.
 
     The shift that makes the matrix positive definite is found by counting negative pivots; from there inverse
     iteration comes to the lowest eigenvalue, from a start that is always the same.

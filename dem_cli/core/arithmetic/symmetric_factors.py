@@ -1,4 +1,4 @@
-"""Compiled factors L D Lᵀ of sparse symmetric matrices, and solution with them.
+"""Compiled factorisation L D Lᵀ of sparse symmetric matrices, and solution with the factors.
 
 Row by row (T. Davis, Algorithm 849: a concise sparse Cholesky factorization package, ACM Trans. Math. Softw. 31, 2005,
 587). Every sum is written out: the last digits are those of any processor.
@@ -11,7 +11,9 @@ from dem_cli.core.kernels.jit import kernel
 
 @kernel
 def count_entries(starts, rows, parents, counts, seen):
-    """Elimination tree (n,) and entries of each column of L (n,), of a matrix by columns; seen: room, (n,)."""
+    """Find the elimination tree (n,) and count the entries of each column of L (n,), for a matrix by columns; seen:
+    room, (n,).
+    """
     for k in range(len(parents)):
         parents[k], seen[k], counts[k] = -1, k, 0
         for p in range(starts[k], starts[k + 1]):
@@ -26,7 +28,8 @@ def count_entries(starts, rows, parents, counts, seen):
 
 @kernel
 def factorise_symmetric(matrix, factors, room):
-    """L (strictly lower, by columns) and D; the number of the first pivot that is nothing, −1 where there is none.
+    """Factorise a matrix into L (strictly lower, by columns) and D; returns the number of the first pivot that is zero,
+    else −1.
 
     matrix: starts, rows, values of all columns; factors: parents, starts (n + 1,), counts, rows, values, diagonal;
     room: seen, order and values, (n,) each.
@@ -67,7 +70,7 @@ def factorise_symmetric(matrix, factors, room):
 
 @kernel
 def solve_symmetric(factors, x):
-    """x becomes the solution with x on the right, (n,)."""
+    """Solve a factorised system in place: x holds the right side and becomes the solution, (n,)."""
     _, begins, counts, below, lower, diagonal = factors
     n = len(x)
     for j in range(n):

@@ -1,1 +1,1 @@
-"""Safety checks as codes ask for them, from a capacity curve and a response spectrum."""
+"""Safety checks of building codes, from a capacity curve and a response spectrum."""

@@ -26,11 +26,11 @@ from dem_cli.core.motion.eurocode import TargetSpectrum
 
 ULTIMATE = 0.4  # of the displacement at which the curve is zero
 SECANT = 0.4  # of the ultimate displacement: where the secant goes through
-LEAST_FALL = 0.8  # of the peak: a curve that ends above has no zero that could be told
+LEAST_FALL = 0.8  # of the peak: a curve that ends above has no zero that could be found
 
 
 def zero_of(displacements: np.ndarray, loads: np.ndarray) -> tuple[float, bool] | None:
-    """Where a falling curve is zero [m], and whether that is beyond its end; None where that cannot be told.
+    """Find the displacement at which a falling curve reaches zero [m], and whether that is beyond its end; else None.
 
     Beyond its end it goes on in the straight line through its end and the middle of its way down.
     """
@@ -58,7 +58,7 @@ def check(
     confidence: float,
     behaviour: float,
 ) -> dict[str, Any] | None:
-    """Every number of the check, by its name in the summary; None where the curve does not fall far enough.
+    """Check a local mechanism: every number by its name in the summary; None where the curve does not fall far enough.
 
     curve: displacements of the load [m] and loads in shares of the weight, (n,) each. gravity: [m/s2]. confidence: FC;
     behaviour: q of the linear check.

@@ -21,7 +21,7 @@ MOST = 3.0  # times the elastic displacement: EN 1998-1, B.5
 
 
 class Demand(NamedTuple):
-    """What a spectrum asks of an oscillator."""
+    """Seismic demand of a spectrum on an oscillator."""
 
     period: float  # T* [s]
     elastic_acceleration: float  # S_e(T*) [m/s2]
@@ -31,7 +31,7 @@ class Demand(NamedTuple):
 
 
 def demand(yield_displacement: float, yield_acceleration: float, spectrum: TargetSpectrum, corner: float) -> Demand:
-    """Of an oscillator that yields at a displacement [m] and acceleration [m/s2]; corner: T_C [s]."""
+    """Compute the demand on an oscillator by its yield displacement [m] and acceleration [m/s2]; corner: T_C [s]."""
     period = secant_period(yield_displacement, yield_acceleration)
     acceleration = float(spectrum(period))
     elastic = elastic_displacement(period, acceleration)
@@ -40,14 +40,14 @@ def demand(yield_displacement: float, yield_acceleration: float, spectrum: Targe
 
 
 def _farther(ratio: float, corner: float) -> float:
-    """Target over elastic displacement. corner: T_C/T."""
+    """Compute the ratio of target to elastic displacement. corner: T_C/T."""
     if ratio <= 1.0 or corner <= 1.0:
         return 1.0
     return min(max((1.0 + (ratio - 1.0) * corner) / ratio, 1.0), MOST)
 
 
 def strongest(found: Demand, corner: float, capacity: float) -> float:
-    """Factor on the spectrum at which its target displacement is the capacity [m]."""
+    """Compute the factor on the spectrum at which its target displacement equals the capacity [m]."""
     elastic = capacity / found.elastic_displacement
     over, q = corner / found.period, found.force_ratio
     if over <= 1.0 or elastic * q <= 1.0:  # as far as an elastic one, or elastic still
@@ -59,7 +59,7 @@ def strongest(found: Demand, corner: float, capacity: float) -> float:
 def check(
     system: dict[str, float], parts: Participation, gravity: float, spectrum: TargetSpectrum, corner: float
 ) -> dict[str, Any]:
-    """Every number of the check, by its name in the summary.
+    """Check a capacity curve by the N2 method: every number by its name in the summary.
 
     system: bilinear system of a curve of the load λ in shares of the weight [-] over the displacement of that load [m].
     gravity: acceleration at λ = 1 [m/s2]; by virtual work the oscillator feels λ gravity, whatever the shape.

@@ -8,7 +8,7 @@ import numpy as np
 
 
 class Participation(NamedTuple):
-    """What a shape φ makes of masses m; φ is 1 on average by mass, as the displacement of a load by mass is."""
+    """Participation of masses m in a shape φ; φ is 1 on average by mass, as the displacement of a load by mass is."""
 
     mass: float  # of all blocks that count, Σ m [kg]
     factor: float  # Γ = Σ m φ / Σ m φ² [-]: displacement of the load over that of the oscillator
@@ -16,12 +16,12 @@ class Participation(NamedTuple):
 
     @property
     def share(self) -> float:
-        """e* = M* / Σ m [-]."""
+        """Participating share of the mass, e* = M* / Σ m [-]."""
         return self.effective_mass / self.mass
 
 
 def participation(masses: np.ndarray, shape: np.ndarray, least: float = 0.0) -> Participation:
-    """Of masses [kg], (n,), and their displacements along the load, (n,), in any unit.
+    """Compute the participation of masses [kg], (n,), from their displacements along the load, (n,), in any unit.
 
     least: blocks that move less than this share of the farthest do not count. Source: EN 1998-1:2004, B.2; circular
     617/2009 to the Italian code of 2008, C8A.4.2.2, in which weights stand for masses. Raises ValueError where the
@@ -39,10 +39,10 @@ def participation(masses: np.ndarray, shape: np.ndarray, least: float = 0.0) -> 
 
 
 def secant_period(displacement: float, acceleration: float) -> float:
-    """2π √(d/a) [s], of a displacement [m] at a spectral acceleration [m/s2]."""
+    """Compute the secant period 2π √(d/a) [s] of a displacement [m] at a spectral acceleration [m/s2]."""
     return float(2.0 * np.pi * np.sqrt(displacement / acceleration))
 
 
 def elastic_displacement(period: float, acceleration: float) -> float:
-    """Spectral displacement [m] at a period [s], of a spectral acceleration [m/s2]: a (T/2π)²."""
+    """Compute the spectral displacement [m] at a period [s] from a spectral acceleration [m/s2]: a (T/2π)²."""
     return acceleration * (period / (2.0 * np.pi)) ** 2

@@ -1,1 +1,1 @@
-"""Contact: which faces meet, contact points between them, and what these remember."""
+"""Contact: which faces meet, the contact points between them, and the memory of these points."""

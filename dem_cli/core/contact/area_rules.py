@@ -1,4 +1,4 @@
-"""Points over the area of a joint in space: quadrature of convex polygons, points at their corners, positive weights.
+"""Quadrature points over the area of a joint in space: convex polygons, points at their corners, positive weights.
 
 Area, first and second moments are exact, so that a joint is as stiff in bending about any axis and in torsion as an
 elastic layer is; with its corners a block still turns about its edges.
@@ -49,7 +49,7 @@ PARALLEL = 1e-9  # of its longest diagonal: a quadrilateral whose opposite sides
 
 
 class InnerPoints(NamedTuple):
-    """Points of outlines beside their corners; outline j has the points starts[j]:starts[j + 1]."""
+    """Quadrature points of outlines beside their corners; outline j has the points starts[j]:starts[j + 1]."""
 
     starts: np.ndarray  # (n + 1,) int64
     places: np.ndarray  # [m], (n_inner, 3), and whatever else is linear over the polygon
@@ -58,7 +58,7 @@ class InnerPoints(NamedTuple):
 
 
 def inner_points(outlines: np.ndarray, starts: np.ndarray, centres: np.ndarray, sides: np.ndarray) -> InnerPoints:
-    """Rules over many plane convex polygons at once.
+    """Compute quadrature points inside many plane convex polygons at once.
 
     outlines: corners in order [m], (n_corners, 3), of which polygon j has starts[j]:starts[j + 1]; centres: centroids
     [m], (n, 3); both with more columns of what else is linear over a polygon. sides: points along a side, (n,), those
@@ -90,7 +90,7 @@ def inner_points(outlines: np.ndarray, starts: np.ndarray, centres: np.ndarray, 
 
 
 def _parallelograms(polygons: np.ndarray) -> np.ndarray:
-    """Which quadrilaterals (n, 4, 3 or more) are parallelograms, (n,) bool."""
+    """Test which quadrilaterals (n, 4, 3 or more) are parallelograms, (n,) bool."""
     polygons = polygons[:, :, :3]
     across = np.linalg.norm(polygons[:, 2:] - polygons[:, :2], axis=2).max(axis=1)
     odd = polygons[:, 0] - polygons[:, 1] + polygons[:, 2] - polygons[:, 3]
@@ -98,14 +98,14 @@ def _parallelograms(polygons: np.ndarray) -> np.ndarray:
 
 
 def _diagonals(polygons: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The centre of parallelograms (m, 4, …) and four points on their diagonals: places (m, 5, …), shares."""
+    """Compute the centre and four diagonal points of parallelograms (m, 4, …): places (m, 5, …), shares."""
     centres = polygons.mean(axis=1)[:, None]
     at = np.concatenate([centres, centres + REACH * (polygons - centres)], axis=1)
     return at, np.tile([AT_CENTRE] + 4 * [ON_DIAGONALS], (len(polygons), 1))
 
 
 def _scattered(polygons: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The points of a whole section of parallelograms (m, 4, …) but their corners: places (m, points, …), shares."""
+    """Points of a whole section of parallelograms (m, 4, …) without corners: places (m, points, …), shares."""
     x, y, shares = section_points()
     along, up = polygons[:, 1] - polygons[:, 0], polygons[:, 3] - polygons[:, 0]
     at = polygons.mean(axis=1)[:, None] + 0.5 * (x[:, None] * along[:, None] + y[:, None] * up[:, None])
@@ -128,7 +128,7 @@ def section_points() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _grid(polygons: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """n × n Gauss–Lobatto points of parallelograms (m, 4, …) but their corners: places (m, n² − 4, …), shares."""
+    """Gauss–Lobatto points, n × n, of parallelograms (m, 4, …) but their corners: places (m, n² − 4, …), shares."""
     places, weights = lobatto(n)
     x, y = (each.ravel() for each in np.meshgrid(places, places, indexing="ij"))
     inner = ~(np.isin(x, places[[0, -1]]) & np.isin(y, places[[0, -1]]))
@@ -151,7 +151,7 @@ def _fan(polygons: np.ndarray, centres: np.ndarray, m: int) -> tuple[np.ndarray,
     places, shares = [centres[:, None]], [np.full((n, 1), 1.0 / (12.0 * m * m))]
 
     def put(p: float, q: float, parts: np.ndarray) -> None:
-        """Points p along one side of each triangle and q along the other, as seen from the centre."""
+        """Add points p along one side of each triangle and q along the other, as seen from the centre."""
         places.append(centres[:, None] + p * one + q * two)
         shares.append(parts)
 

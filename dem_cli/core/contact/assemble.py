@@ -1,4 +1,4 @@
-"""From pairs of faces to the arrays of the contact loop: joints, their geometry, and contacts that carry nothing."""
+"""Assembly of joints from pairs of faces: arrays of the contact loop, geometry, and contacts without forces."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def build_joints(
     chains: Any = None,
     moves: bool = True,
 ) -> JointArrays:
-    """The joints of the given faces with stiffness from their present overlap, and contacts that carry nothing.
+    """Build the joints of the given faces with stiffness from their present overlap, and contacts without forces.
 
     chains: what comes back of the joints of the start (NarrowPhase.chains_of); None: these are they. moves: whether
     geometry does, else it is that of the start.

@@ -1,4 +1,4 @@
-"""The joint between two blocks of the undeformed structure: the outline of it as material points of both."""
+"""Joint between two blocks of the undeformed structure: its outline as material points of both."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ WIDEST_JOINT = 0.05  # of the smallest edge: a wider gap is no joint
 
 
 class JointEnds(NamedTuple):
-    """The outline of a joint before anything moved: in the plane its two ends, in space its corners."""
+    """Outline of a joint before anything moved: in the plane its two ends, in space its corners."""
 
     normal: np.ndarray  # unit, from the first block to the second, (d,)
     on_first: np.ndarray  # from the centroid of the first block [m], (n, d)
@@ -27,7 +27,7 @@ class JointEnds(NamedTuple):
     shares: np.ndarray  # of the joint that belong to each place, (n,)
 
     def middles(self) -> tuple[np.ndarray, np.ndarray]:
-        """Middle of the joint on both blocks, from their centroids [m], (d,) each."""
+        """Compute the middle of the joint on both blocks, from their centroids [m], (d,) each."""
         return product(self.shares, self.on_first), product(self.shares, self.on_second)
 
 
@@ -43,12 +43,14 @@ class StartJoints:
         return geometry_of(self.model.dimension).drawn(self.model, faces, self._corners, self._least)
 
     def neighbours(self, block: int) -> list[int]:
-        """Blocks that share a joint with this one."""
+        """List the blocks that share a joint with this one."""
         pairs = self.faces.blocks[(self.faces.blocks == block).any(axis=1)]
         return sorted({int(b) for b in pairs.ravel()} - {block})
 
     def ends(self, first: int, second: int) -> JointEnds | None:
-        """Of the joint of two blocks, the longest one where they share several; None: they share none."""
+        """Find the outline of the joint of two blocks, the longest where they share several; None where they share
+        none.
+        """
         blocks = self.model.part_blocks[self._near.parts]
         shared = (np.sort(blocks, axis=1) == sorted((first, second))).all(axis=1)
         turned, near = blocks[shared, 0] != first, self._near.where(shared)

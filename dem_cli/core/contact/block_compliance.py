@@ -23,17 +23,18 @@ class BlockCompliance(NamedTuple):
     free: np.ndarray  # named joints whose own kn, ks are those of a rigid joint: they do not count, (n_named, 2) bool
 
     def in_series(self, own: np.ndarray, faces: np.ndarray, named: np.ndarray) -> np.ndarray:
-        """Stiffness of joints with their blocks [Pa/m], (n, 2).
+        """Compute the stiffness of joints in series with their blocks [Pa/m], (n, 2).
 
         own: kn and ks of the joints alone [Pa/m], (n, 2); faces: that meet there, (n, 1) or (n, 2); named: which joints
-        of the case they are, (n,).
+        of the model they are, (n,).
         """
         more = self.behind[faces].sum(axis=1)
         together = np.where(self.free[named], 0.0, 1.0 / own) + more
         return np.where(more > 0.0, 1.0 / np.where(more > 0.0, together, 1.0), own)
 
     def shares(self, own: np.ndarray, faces: np.ndarray, named: np.ndarray) -> np.ndarray:
-        """Compliance of the blocks over that of the joint alone, kn h/E [-], (n,); infinite where that is rigid.
+        """Compute the compliance of the blocks over that of the joint alone, kn h/E [-], (n,); infinite where that is
+        rigid.
 
         own: kn of the joints alone [Pa/m], (n,); faces: (n, 2); named: (n,).
         """
@@ -42,7 +43,7 @@ class BlockCompliance(NamedTuple):
 
 
 def block_compliance(model: Model, moduli: np.ndarray, free: np.ndarray) -> BlockCompliance | None:
-    """Of the blocks of a model; None: none deforms.
+    """Compute the compliance of the blocks of a model; None where no block deforms.
 
     moduli: E and G of each material [Pa], infinite where its blocks stay rigid, (n_materials, 2); free: as above.
     """

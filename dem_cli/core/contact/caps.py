@@ -35,7 +35,7 @@ class JointCap(NamedTuple):
 
 
 class Caps(NamedTuple):
-    """The caps of the joints of the start, which come back wherever the same two faces meet again."""
+    """Caps of the joints of the start, used again wherever the same two faces meet."""
 
     parts: np.ndarray  # the two parts of each, (n, 2)
     faces: np.ndarray  # and their faces, (n, 2)
@@ -49,7 +49,7 @@ class Caps(NamedTuple):
 
 
 def made_caps(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Caps | None:
-    """Caps of the joints of the start, and points over the area of plane ones, by the layout of their named joint.
+    """Make caps of the joints of the start, and points over the area of plane ones, by the layout of their named joint.
 
     None: no joint may have any.
     """
@@ -85,7 +85,7 @@ def made_caps(model: Model, faces: Faces, corners: np.ndarray, properties: Joint
 
 
 def _centroids(model: Model, faces: Faces, corners: np.ndarray) -> np.ndarray:
-    """Of the blocks b, as they stand at the start [m], (n, 3)."""
+    """Compute the centroids of the blocks b at the start [m], (n, 3)."""
     vertex = model.topology.face_corners[model.topology.face_starts[faces.faces[:, 1]]]
     return corners[vertex] - model.vertices[vertex]
 
@@ -93,8 +93,9 @@ def _centroids(model: Model, faces: Faces, corners: np.ndarray) -> np.ndarray:
 def _plane_points(
     model: Model, faces: Faces, corners: np.ndarray, found: Meetings, sides: np.ndarray
 ) -> tuple[list[np.ndarray], np.ndarray]:
-    """Points within the outlines of joints of faces, so many along each side (n,): of each joint their arms on b [m]
-    and areas [m²], (points, 4), and the share of its corners, (n,)."""
+    """Compute points within the outlines of plane joints, so many along each side (n,). Returns for each joint their
+    arms on b [m] and areas [m²], (points, 4), and the share of its corners, (n,).
+    """
     middles = found.measures[:, CENTRE : CENTRE + 3]
     rule = inner_points(found.places, found.starts, middles, np.where(found.kinds == FACES, sides, 0))
     of = np.repeat(np.arange(len(sides)), np.diff(rule.starts))
@@ -103,7 +104,7 @@ def _plane_points(
 
 
 def caps_of(caps: Caps | None, faces: Faces) -> Caps:
-    """The caps of these pairs of faces, row by row: none but where the faces of one meet.
+    """Select the caps of these pairs of faces, row by row: none except where the same faces meet.
 
     Two parts that meet by other faces keep the rise alone: the outline of their cap is higher than the faces drawn.
     """
@@ -130,7 +131,7 @@ def caps_of(caps: Caps | None, faces: Faces) -> Caps:
 def cap_over(
     outline: np.ndarray, weights: np.ndarray, normal: np.ndarray, layout: PointLayout, key: tuple[int, ...]
 ) -> JointCap:
-    """The cap over a joint.
+    """Build the cap over a joint.
 
     outline: corners in order, (k, 3) [m]; weights: share of the area of each in a plane joint, (k,); normal: unit, from
     a to b; key: what tells this joint from others of its kind, as `draw` takes it. Each point has the share of its
@@ -143,7 +144,7 @@ def cap_over(
 
 
 def half_profile(layout: PointLayout, key: tuple[int, ...], outline: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Scale of each ring (1: the outline) and its rise above the plane of a [m], from outside in, each (m,).
+    """Compute scale of each ring (1: the outline) and rise above the plane of a [m], from outside in, each (m,).
 
     The joint is as long as twice the way from its centroid to the corner that is furthest away.
     """
@@ -154,7 +155,8 @@ def half_profile(layout: PointLayout, key: tuple[int, ...], outline: np.ndarray)
 
 
 def slopes(outline: np.ndarray, ways: np.ndarray, rises: np.ndarray) -> np.ndarray:
-    """Slope of each side of the cap: from each ring to the next one inside, over each side of the outline, (m − 1, k).
+    """Compute slopes of the sides of a cap, each from a ring to the next one inside, over a side of the outline, (m −
+    1, k).
 
     It is the rotation by which the block comes to rest there from the innermost ring.
     """
@@ -162,24 +164,24 @@ def slopes(outline: np.ndarray, ways: np.ndarray, rises: np.ndarray) -> np.ndarr
 
 
 def apothems(outline: np.ndarray) -> np.ndarray:
-    """Distance of each side of an outline (k, 3) from its centroid [m], (k,)."""
+    """Compute the distance of each side of an outline (k, 3) from its centroid [m], (k,)."""
     along = np.roll(outline, -1, axis=0) - outline
     return np.linalg.norm(np.cross(along, outline - centroid(outline)), axis=1) / np.linalg.norm(along, axis=1)
 
 
 def steepest(layout: PointLayout, outline: np.ndarray) -> float:
-    """Largest slope of a side of the cap over a joint [-]; of layouts with ranges: the largest of many drawn ones."""
+    """Compute the largest slope of a side of the cap over a joint [-]; for ranges the largest of many drawn ones."""
     drawn = (slopes(outline, *half_profile(layout, (i,), outline)) for i in range(SAMPLES))
     return max(float(each.max(initial=0.0)) for each in drawn)
 
 
 def highest(layout: PointLayout, outline: np.ndarray) -> float:
-    """Rise of the outline of the cap over a joint [m]; of layouts with ranges: the largest of many drawn ones."""
+    """Compute the rise of the outline of the cap over a joint [m]; for ranges the largest of many drawn ones."""
     return max(float(half_profile(layout, (i,), outline)[1].max()) for i in range(SAMPLES))
 
 
 def odd_or_uneven(layout: PointLayout) -> ProfileFault | None:
-    """Why a profile is none of a cap, which is the same on both sides of its middle; None: it is."""
+    """Check that a profile can be a cap, which is the same on both sides of its middle; returns the fault or None."""
     low, high = layout.sides or (1, 1)
     if layout.over == "face":
         return ProfileFault("over", "'face' is not allowed in 3D; must be 'joint': each joint has a cap of its own")
@@ -192,13 +194,13 @@ def odd_or_uneven(layout: PointLayout) -> ProfileFault | None:
 
 
 def has_cap(layout: PointLayout | None, normal: np.ndarray) -> bool:
-    """Whether a joint of two faces with this unit normal has a cap: `only` of its layout says which."""
+    """Test whether a joint of two faces with this unit normal has a cap, by `only` of its layout."""
     kind = "bed" if abs(normal[2]) >= STEEP else "head"
     return layout is not None and layout.sides is not None and layout.only in ("all", kind)
 
 
 def centroid(outline: np.ndarray) -> np.ndarray:
-    """Centroid of the area of a plane polygon (k, 3) [m], (3,)."""
+    """Compute the centroid of the area of a plane polygon (k, 3) [m], (3,)."""
     near = outline - outline[0]
     doubled = np.cross(near[1:-1], near[2:])
     whole = doubled.sum(axis=0)

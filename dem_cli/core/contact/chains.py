@@ -17,11 +17,11 @@ from dem_cli.core.geometry import profile
 from dem_cli.core.model.model import Model
 
 STEEP = np.cos(np.pi / 4) - 1e-9  # a head joint has its normal within 45° of the horizontal
-END_TO_END = 1e-3  # of the edge of b: a shorter overlap at the start is none
+END_TO_END = 1e-3  # of the edge of b: a shorter overlap at the start is no joint
 
 
 class Chains(NamedTuple):
-    """The contact points of the joints of the start, which come back wherever the same two faces meet again."""
+    """Contact points of the joints of the start, used again wherever the same two faces meet."""
 
     faces: np.ndarray  # as PlanarGeometry.faces, (n_joints, 2)
     starts: np.ndarray  # as Joints.starts, (n_joints + 1,)
@@ -30,7 +30,7 @@ class Chains(NamedTuple):
 
 
 def made_chains(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Chains:
-    """Contact points of the joints of the start, by the layout of their named joint."""
+    """Make contact points of the joints of the start, by the layout of their named joint."""
     n, edges = len(faces.parts), edges_of(model, faces)
     named = properties.between(model, model.part_blocks[faces.parts])
     low, high = overlap_ends(edges, corners)
@@ -55,7 +55,9 @@ def made_chains(model: Model, faces: Faces, corners: np.ndarray, properties: Joi
 def come_back(
     chains: Chains, faces: Faces, edges: np.ndarray, corners: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """First point of each joint, profile and shares of all points: those of the start keep theirs, others are plane."""
+    """Select first point of each joint, profile and shares of all points: joints of the start keep theirs, others are
+    plane.
+    """
     known = same_rows(chains.faces, faces.faces)
     stay = np.flatnonzero(known >= 0)
     counts = np.full(len(known), 2)
@@ -72,7 +74,8 @@ def come_back(
 def _chain(
     layout: PointLayout, key: tuple[int, int], low: float, high: float, whole: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Profile (n, 2) of one joint, as PlanarGeometry.profile, and the share of its area of each point, (n,).
+    """Compute the profile (n, 2) of one joint, as PlanarGeometry.profile, and the share of its area of each point,
+    (n,).
 
     key: of the edges of b and of a; low, high: its ends along the edge of b, from near a0 on; whole: its length.
     """
@@ -86,6 +89,6 @@ def _chain(
 
 
 def _has(layout: PointLayout, overlap: float, whole: float, along: np.ndarray) -> bool:
-    """Whether a joint with this overlap, along a unit vector, has the layout; joints end to end have none."""
+    """Test whether a joint with this overlap, along a unit vector, has the layout; joints end to end have none."""
     kind = "bed" if abs(along[0]) >= STEEP else "head"
     return overlap > END_TO_END * whole and layout.only in ("all", kind)

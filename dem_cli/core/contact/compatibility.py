@@ -1,4 +1,4 @@
-"""Compatibility of blocks, B: from the motion of the blocks to the relative motion at every contact point.
+"""Compatibility matrix B: from the motion of the blocks to the relative motion at every contact point.
 
     w = B u        motion of b against a at every point: along its normal (opening, positive), then along its tangents
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 
 
 def directions(joints: Joints, dimension: int) -> np.ndarray:
-    """Unit normal and tangents of every point, (n_points, d, d)."""
+    """Compute unit normal and tangents of every contact point, (n_points, d, d)."""
     return frames(joints.frames, dimension)
 
 
 def relative_motion(joints: Joints, dimension: int) -> np.ndarray:
-    """∂(motion of b against a)/∂(motion of a, of b), (n_points, d directions, 2 blocks, n_dof)."""
+    """Compute ∂(motion of b against a)/∂(motion of a, of b), (n_points, d directions, 2 blocks, n_dof)."""
     d = dimension
     along = directions(joints, d)
     n_points = len(along)
@@ -41,12 +41,12 @@ def relative_motion(joints: Joints, dimension: int) -> np.ndarray:
 
 
 def held_motions(model: Model, strains: bool) -> np.ndarray:
-    """Degrees of freedom that loads do not change, (n_blocks, n_dof) bool; strains: with modes of blocks."""
+    """Find degrees of freedom that loads do not change, (n_blocks, n_dof) bool; strains: with modes of blocks."""
     return np.column_stack([model.held, model.mode_stiffness == 0.0]) if strains else model.held
 
 
 def free_columns(model: Model, joints: Joints, strains: bool = False) -> np.ndarray:
-    """Column of each degree of freedom of both blocks of every point, −1: held, (n_points, 2 blocks, n_dof).
+    """Number the column of each degree of freedom of both blocks of every point, −1: held, (n_points, 2 blocks, n_dof).
 
     strains: as `held_motions`.
     """
@@ -59,7 +59,7 @@ def free_columns(model: Model, joints: Joints, strains: bool = False) -> np.ndar
 
 
 def compatibility(model: Model, joints: Joints, strained: Bodies | None = None) -> csr_matrix:
-    """B from the free degrees of freedom to the motion of b against a at every point, (n_points·d, n_free).
+    """Build the compatibility matrix B from free degrees of freedom to motion of b against a, (n_points·d, n_free).
 
     strained: blocks that deform, as they are now, whose modes are further columns; None: all blocks are rigid.
     """
@@ -80,7 +80,7 @@ def compatibility(model: Model, joints: Joints, strained: Bodies | None = None) 
 
 
 def strain_motion(model: Model, joints: Joints, bodies: Bodies) -> np.ndarray:
-    """∂(motion of b against a)/∂(amplitudes of a, of b) where blocks deform, (n_points, d directions, 2 blocks, m)."""
+    """Derivatives ∂(motion of b against a)/∂(amplitudes of a, of b) where blocks deform, (n_points, d, 2 blocks, m)."""
     d, blocks = model.dimension, joints.blocks[joints.owners]
     arms = joints.points[:, None] - bodies.positions[blocks]
     turned = rotated_basis(bodies.gradients.reshape(-1, d, d))[blocks]

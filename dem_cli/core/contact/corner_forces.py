@@ -17,7 +17,7 @@ from dem_cli.core.kernels.records import Joints
 
 
 def at_corners(joints: Joints, normal: np.ndarray, shear: np.ndarray) -> np.ndarray:
-    """Shear forces that act at the points, along their tangents [N], (n_points, d − 1); normal [N], (n_points,).
+    """Convert shear forces to equivalent forces at the points, along their tangents [N], (n_points, d − 1).
 
     shear: as the loops have them [N], (n_points, d − 1), which comes back where torsion is no matter.
     """

@@ -1,4 +1,4 @@
-"""Joints as they were drawn: opening, crack width, slip, stress and eccentricity of each at any instant.
+"""Joints of the undeformed structure at any instant: opening, crack width, slip, stress and eccentricity of each.
 
 A joint is a pair of faces that face each other in the undeformed structure. It is followed by the material points
 around it (in the plane its two ends), however far the blocks have moved, so that it stays one joint when contact points
@@ -25,7 +25,7 @@ OPEN, STICKING, SLIDING = (STATES.index(name) for name in ("open", "sticking", "
 
 
 class JointInstant(NamedTuple):
-    """All joints at one instant; in the plane each has two places, in space those of JointPlaces.starts."""
+    """State of all joints at one instant; in the plane each has two places, in space those of JointPlaces.starts."""
 
     states: JointStates
     gaps: np.ndarray  # distance across the joint at its places, positive open [m], (n, 2); in space (n_places,)
@@ -33,7 +33,7 @@ class JointInstant(NamedTuple):
 
 
 class DrawnJoints:
-    """The joints of a structure as it was drawn; `at` follows them. `places` never change."""
+    """Joints of the undeformed structure; `at` follows them. `places` never change."""
 
     def __init__(self, model: Model):
         faces = StartJoints(model).faces
@@ -42,7 +42,7 @@ class DrawnJoints:
         self.places = joint_places(self.faces)
 
     def _follow(self, faces: DrawnFaces, centroids: np.ndarray) -> None:
-        """Keep the joints to follow, sorted by their keys; centroids of their blocks as drawn [m], (n_blocks, d)."""
+        """Store the joints to follow, sorted by their keys; centroids of their blocks as drawn [m], (n_blocks, d)."""
         self.faces, self.centroids = faces, centroids
         self.keys = _keys(faces.blocks, len(centroids))
         self.owners = np.repeat(np.arange(len(faces.areas)), np.diff(self.faces.starts))
@@ -53,13 +53,14 @@ class DrawnJoints:
         self.drawn = np.maximum((self.apart * self.faces.normals[self.owners]).sum(axis=1), 0.0)  # open as drawn [m]
 
     def _copies(self, count: int) -> DrawnJoints:
-        """The joints of so many copies of the structure, whose blocks and joints are numbered through."""
+        """Repeat the joints for so many copies of the structure, whose blocks and joints are numbered through."""
         found = copy(self)
         found._follow(self.faces.copies(count, len(self.centroids)), repeated(self.centroids, count))
         return found
 
     def at(self, positions: np.ndarray, orientations: np.ndarray, contacts: ContactRecord) -> JointInstant:
-        """Joints of blocks that have moved to these centroids [m], (n_blocks, d), and turned, under contact forces.
+        """Compute the state of joints whose blocks have moved to these centroids [m], (n_blocks, d), and turned, under
+        contact forces.
 
         Of several instants as records.frames.FrameStack has them: the joints of each lie behind those before.
         """
@@ -89,11 +90,11 @@ class DrawnJoints:
         return JointInstant(states, gaps.reshape(n, 2) if two else gaps, ends.reshape(n, 2, -1) if two else ends)
 
     def _means(self, values: np.ndarray) -> np.ndarray:
-        """Means over the area of each joint, of values at its places."""
+        """Compute means over the area of each joint, of values at its places."""
         return np.bincount(self.owners, self.faces.shares * values, len(self.faces.areas))
 
     def _owners(self, contacts: ContactRecord, ends: np.ndarray, normals: np.ndarray) -> np.ndarray:
-        """Joint of each contact point, (n_points,): the nearest one of its blocks; −1: they had none."""
+        """Find the joint of each contact point, (n_points,): the nearest one of its blocks; −1 where they had none."""
         keys = _keys(contacts.blocks, len(self.centroids))
         first, after = (np.searchsorted(self.keys, keys, side) for side in ("left", "right"))
         owners = np.where(after > first, first, -1)
@@ -110,7 +111,7 @@ class DrawnJoints:
     def _forces(
         self, contacts: ContactRecord, ends: np.ndarray, normals: np.ndarray, tangents: list[np.ndarray]
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Of each joint: normal force, shear force [N], normal force times eccentricity [N m]; state."""
+        """Sum for each joint: normal force, shear force [N], normal force times eccentricity [N m]; and its state."""
         n, owners = len(normals), self._owners(contacts, ends, normals)
         own = np.flatnonzero(owners >= 0)
         at, force = owners[own], contacts.forces()[own]
@@ -125,7 +126,7 @@ class DrawnJoints:
 
 
 def joint_places(faces: DrawnFaces) -> JointPlaces:
-    """Joints as they were drawn, for the results."""
+    """Collect the places of joints as they were drawn, for the results."""
     if faces.normals.shape[1] == 2:
         ends = faces.on_first.reshape(-1, 2, 2)
         return JointPlaces(faces.blocks, ends, faces.normals, faces.lengths, faces.areas)
@@ -135,10 +136,10 @@ def joint_places(faces: DrawnFaces) -> JointPlaces:
 
 
 def _measured(components: list[np.ndarray]) -> np.ndarray:
-    """What has one component with its sign, what has two by its length."""
+    """Return one component with its sign, the length of two."""
     return components[0] if len(components) == 1 else np.hypot(*components)
 
 
 def _keys(blocks: np.ndarray, n_blocks: int) -> np.ndarray:
-    """One number for each pair of blocks, (n,)."""
+    """Number each pair of blocks, (n,)."""
     return blocks[:, 0] * n_blocks + blocks[:, 1]

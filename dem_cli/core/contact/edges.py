@@ -1,4 +1,4 @@
-"""Edges that face each other: their corners, their lengths, and where they overlap; 2D."""
+"""Edges that face each other: their corners, lengths and overlaps; 2D."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from dem_cli.core.model.model import Model
 
 
 def edges_of(model: Model, faces: Faces) -> np.ndarray:
-    """Corners (a0, a1, b0, b1) of the two edges of each pair, (n, 4) int64."""
+    """List the corners (a0, a1, b0, b1) of the two edges of each pair, (n, 4) int64."""
     return model.topology.ends[faces.faces].reshape(-1, 4)
 
 
 def lengths_of(edges: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Lengths of both edges of each pair [m], (n, 2)."""
+    """Compute the lengths of both edges of each pair [m], (n, 2)."""
     ends = corners[edges]
     return np.sqrt(((ends[:, [1, 3]] - ends[:, [0, 2]]) ** 2).sum(axis=2))
 
 
 def overlap_lengths(edges: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Length of the overlap of two edges along the first [m], (n,); negative: they miss each other."""
+    """Compute the length of the overlap of two edges along the first [m], (n,); negative where they miss each other."""
     low, high = overlap_ends(edges, corners)
     return high - low
 
 
 def overlap_ends(edges: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where the overlap of two edges begins and ends, along the first edge from its start [m], (n,) each."""
+    """Compute the beginning and end of the overlap of two edges, along the first edge from its start [m], (n,) each."""
     a0, a1, b0, b1 = (corners[edges[:, i]] for i in range(4))
     along = a1 - a0
     length = np.sqrt((along**2).sum(axis=1))
@@ -37,7 +37,7 @@ def overlap_ends(edges: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np
 
 
 def widest_gaps(edges: np.ndarray, corners: np.ndarray, steepest: float, bare: float) -> np.ndarray:
-    """Largest gap of each pair of edges that look at each other [m], (n,); 0 where they do not or overlap.
+    """Compute the largest gap of each pair of edges that face each other [m], (n,); 0 where they do not, or overlap.
 
     steepest: slope of one against the other; bare: share of the shorter one that they have to face each other over. A
     wedge touches at one end of the joint and is open at the other.

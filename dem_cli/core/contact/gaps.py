@@ -1,4 +1,4 @@
-"""Gaps of the start: which of them close like joints and which stay open; one rule for checks, solvers and messages.
+"""Gaps of the undeformed structure: which close like joints and which stay open; one rule for all of the package.
 
 A gap of at most CLOSING_GAP of the smaller part is a joint that has yet to close: what lies over it is held up, and on
 the way to failure geometry moves. A wider one is meant to be there: nothing rests on it, and where the geometry of the
@@ -36,12 +36,12 @@ class StartGaps(NamedTuple):
     close: np.ndarray  # whether the gap closes like a joint, (n,) bool
 
     def where(self, kept: np.ndarray) -> Self:
-        """Those of a mask (n,) bool."""
+        """Select the gaps of a mask (n,) bool."""
         return type(self)(*(field[kept] for field in self))
 
 
 def joined(separation: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Whether parts touch, or have a gap that closes like a joint, (n,) bool.
+    """Test whether parts touch, or have a gap that closes like a joint, (n,) bool.
 
     separation: of two parts [m], (n,); sizes: of the smaller one [m], (n,).
     """
@@ -49,19 +49,19 @@ def joined(separation: np.ndarray, sizes: np.ndarray) -> np.ndarray:
 
 
 def joint_reach(model: Model) -> float:
-    """Distance within which all parts are that `joined` may say yes to [m]."""
+    """Compute the largest gap that may close like a joint in this model [m]."""
     free = ~model.fixed[model.part_blocks]
     return CLOSING_GAP * float((model.parts.sizes[free] if free.any() else model.parts.sizes).max())
 
 
 def notice_reach(model: Model) -> float:
-    """Distance within which all gaps are that are told or close [m]."""
+    """Compute the largest gap that closes like a joint or is reported in a warning [m]."""
     free = ~model.fixed[model.part_blocks]
     return max(joint_reach(model), NOTICED_GAP * median(model.parts.sizes[free]) if free.any() else 0.0)
 
 
 def gaps_of_start(model: Model) -> StartGaps:
-    """The gaps of the undeformed structure that close, and those that are narrow enough to be named."""
+    """Find the gaps of the undeformed structure that close, and those that are narrow enough to be named."""
     sizes, corners = model.parts.sizes, undeformed(model)
     faces = find_joints(model, corners, notice_reach(model))
     scale, narrow = sizes[faces.parts].min(axis=1), geometry_of(model.dimension)
@@ -81,7 +81,7 @@ def gaps_of_start(model: Model) -> StartGaps:
 
 
 def _filled(model: Model, faces: Faces, corners: np.ndarray) -> np.ndarray:
-    """Whether other blocks lie between two faces all over where they look at each other, a thin tip or a sliver, (n,).
+    """Test whether other blocks fill the whole gap between two faces, a thin tip or a sliver, (n,).
 
     All places are looked up at once: there may be as many such pairs as there are stones.
     """
@@ -97,7 +97,7 @@ def _filled(model: Model, faces: Faces, corners: np.ndarray) -> np.ndarray:
 
 
 def wedges_of_start(model: Model, properties: JointProperties) -> StartGaps:
-    """Joints that touch at one end and are open at the other, by a small angle: blocks sit down on them; widest there.
+    """Find wedge-shaped joints, touching at one end and open at the other by a small angle, with their widest gaps.
 
     An end that is open by more than STEEPEST of the way to where it touches is far from anything: a corner on a face.
     """
@@ -115,14 +115,14 @@ def wedges_of_start(model: Model, properties: JointProperties) -> StartGaps:
 
 
 def _across(joints: Joints, gaps: np.ndarray, joint: np.integer) -> float:
-    """Distance from where a joint is widest to where it touches [m]: along the slope, however deep a joint in 3D is."""
+    """Compute the distance from where a joint is widest to where it touches [m], along the slope."""
     of = slice(joints.starts[joint], joints.starts[joint + 1])
     points, own = joints.points[of], gaps[of]
     return float(np.linalg.norm(points[own <= 0.0] - points[own.argmax()], axis=1).min())
 
 
 def gap_words(model: Model, gaps: StartGaps) -> str:
-    """How many gaps, and the narrowest with its blocks: "a gap of 0.002 m between 'post' and 'beam'"."""
+    """Describe the number of gaps, and the narrowest with its blocks: "a gap of 0.002 m between 'post' and 'beam'"."""
     a, b = (model.block_ids[i] for i in gaps.blocks[0])
     between = f"{gaps.widths[0]:.3g} m between '{a}' and '{b}'"
     return f"a gap of {between}" if len(gaps.widths) == 1 else f"{len(gaps.widths)} gaps, the narrowest {between}"

@@ -1,4 +1,4 @@
-"""Joints of the start, joint by joint: all points of a joint in one plane with one frame, that of its closest point."""
+"""Joints in fixed geometry: all points of a joint in one plane with one frame, that of its closest point."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dem_cli.core.kernels.records import Joints
 
 
 def in_planes(joints: Joints, gaps: np.ndarray, positions: np.ndarray) -> FixedJoints:
-    """The joints with their points in one plane each, through the point with the smallest gap, across its normal.
+    """Project the points of each joint into one plane, through the point with the smallest gap, across its normal.
 
     gaps: of the points [m], (n_points,); positions: centroids of the blocks [m], (n_blocks, d). Places are counted from
     the middle of the points. Where an end of a joint is open, this is not quite where its point was.
@@ -44,13 +44,13 @@ def in_planes(joints: Joints, gaps: np.ndarray, positions: np.ndarray) -> FixedJ
 
 
 def _closest(gaps: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Point with the smallest gap of each joint, the first of equals, (n_joints,)."""
+    """Find the point with the smallest gap of each joint, the first of equals, (n_joints,)."""
     owners = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
     return np.lexsort((np.arange(len(gaps)), gaps, owners))[starts[:-1]]
 
 
 def _means(values: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Mean over the points of each joint, (n_joints, d)."""
+    """Compute the mean over the points of each joint, (n_joints, d)."""
     if len(starts) == 1:
         return np.zeros((0, values.shape[1]))
     return np.add.reduceat(values, starts[:-1], axis=0) / np.diff(starts)[:, None]

@@ -24,12 +24,12 @@ class Faces(NamedTuple):
     reach: float = 0.0  # within which they were looked for [m]
 
     def where(self, kept: np.ndarray) -> Faces:
-        """Those of a mask (n,) bool."""
+        """Select the pairs of faces of a mask (n,) bool."""
         return Faces(self.parts[kept], self.faces[kept], self.separation[kept], self.reach)
 
 
 class DrawnFaces(NamedTuple):
-    """Pairs of faces that share a joint in the undeformed structure, with the outline of each as places on both.
+    """Pairs of faces that share a joint in the undeformed structure, with the outline of each as places on both parts.
 
     Pair j has the places starts[j]:starts[j + 1]: in the plane both ends, in space the corners around the overlap.
     """
@@ -44,7 +44,7 @@ class DrawnFaces(NamedTuple):
     areas: np.ndarray  # [m²], (n,)
 
     def taken(self, order: np.ndarray) -> DrawnFaces:
-        """Those with these numbers, in this order."""
+        """Select the pairs with these numbers, in this order."""
         places = points_of(self.starts, order)
         starts = np.concatenate([[0], np.cumsum(np.diff(self.starts)[order])])
         return DrawnFaces(
@@ -53,7 +53,9 @@ class DrawnFaces(NamedTuple):
         )  # fmt: skip
 
     def copies(self, count: int, n_blocks: int) -> DrawnFaces:
-        """Faces of several copies of a structure, one behind the other; blocks and places are numbered through."""
+        """Repeat the faces for several copies of a structure, one behind the other; blocks and places are numbered
+        through.
+        """
         starts = numbered_through(self.starts[:-1], self.starts[-1], count)
         normals, *others = (repeated(values, count) for values in (self.normals, *self[3:]))
         blocks = numbered_through(self.blocks, n_blocks, count)
@@ -71,7 +73,7 @@ LawRows = Callable[[np.ndarray, np.ndarray, Model, np.ndarray], np.ndarray]
 
 
 class JointProperties(NamedTuple):
-    """Properties of each named joint, by its number."""
+    """Stiffness, law and contact points of each named joint, by its number."""
 
     names: tuple[str, ...]
     by_material: np.ndarray  # joint of each pair of materials, (n_materials, n_materials) int64
@@ -80,7 +82,7 @@ class JointProperties(NamedTuple):
     law: np.ndarray  # parameters of the law, (n_named, n_parameters)
     intact: np.ndarray  # what points that touch at the start remember, (n_named, n_scalars)
     layouts: tuple[PointLayout | None, ...]  # where the contact points are; None: at the two ends of the joint
-    spread: np.ndarray  # in space: those without bonds or points that a case asks for, whose friction has the torsion
+    spread: np.ndarray  # in space: those without bonds or given points, whose friction has the torsion
     # of a spread pressure (contact/corner_forces.py), (n_named,) bool
     rigid: np.ndarray  # whose stiffness is a means and no property: kn = "auto", no block deforms, (n_named,) bool
     pressed: PressedLaw = lambda parameters, overlaps, memory, kn: kn * np.maximum(overlaps, 0.0)
@@ -93,63 +95,66 @@ class JointProperties(NamedTuple):
 
     @property
     def profiled(self) -> bool:
-        """Whether any joint has points elsewhere than at its two ends."""
+        """True where any joint has points elsewhere than at its two ends."""
         return any(layout is not None for layout in self.layouts)
 
     @property
     def rough(self) -> bool:
-        """Whether any joint has a profile: points that are not in one plane."""
+        """True where any joint has a profile: points that are not in one plane."""
         return any(layout is not None and layout.sides is not None for layout in self.layouts)
 
     @property
     def given(self) -> bool:
-        """Whether the stiffness of any joint is a property of the structure: kn of the case, or blocks that deform."""
+        """True where the stiffness of any joint is a property of the structure: kn given, or blocks that deform."""
         return self.compliance is not None or not self.rigid.all()
 
     @property
     def plane(self) -> list[PointLayout]:
-        """Layouts of plane joints; those of profiles as if they had none."""
+        """Layouts of plane joints; joints with a profile as if they had none."""
         return [PointLayout() if layout is None or layout.sides is not None else layout for layout in self.layouts]
 
     @property
     def centred(self) -> np.ndarray:
-        """In space: which have points at the corners and the centroid of each face joint, (n_named,) bool."""
+        """Joints in space with points at the corners and the centroid of each face joint, (n_named,) bool."""
         return np.array([layout.centred for layout in self.plane])
 
     @property
     def along_sides(self) -> np.ndarray:
-        """Points along each side of a face joint; 2: those at its corners alone, or at its centre too, (n_named,)."""
+        """Number of points along each side of a face joint; 2: at its corners alone, or at its centre too,
+        (n_named,).
+        """
         return np.array([2 if layout.centred else layout.points for layout in self.plane])
 
     def between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
-        """The named joint of each pair of blocks (n, 2), −1: nothing is between them, (n,) int64."""
+        """Find the named joint of each pair of blocks (n, 2), −1 for an open head joint, (n,) int64."""
         heads = np.arange(len(self.names)) if self.heads is None else self.heads
         return model.joints_between(self.by_material, blocks, heads)
 
     def acting(self, model: Model, faces: Faces) -> Faces:
-        """Faces between which anything can act: without those in head joints that are not filled."""
+        """Select faces that can transfer force: without those in head joints that are not filled."""
         if self.heads is None or (self.heads >= 0).all():
             return faces
         return faces.where(self.between(model, model.part_blocks[faces.parts]) >= 0)
 
     def rigid_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
-        """Whether the joint of each pair of blocks (n, 2) is as rigid as the solver can make it, (n,) bool."""
+        """Test whether the joint of each pair of blocks (n, 2) is as rigid as the solver can make it, (n,) bool."""
         rigid = self.rigid[self.between(model, blocks)]
         return rigid if self.compliance is None else rigid & ~self.compliance.deforms[blocks].any(axis=1)
 
     def integrated_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
-        """Whether the pressure on the joint of each pair of blocks (n, 2) is integrated over their faces, (n,) bool."""
+        """Test whether pressure is integrated over the faces of each pair of blocks (n, 2), (n,) bool."""
         if self.integrated is None:
             return np.zeros(len(blocks), bool)
         return self.integrated[self.between(model, blocks)] & ~self.rigid_between(model, blocks)
 
     def spread_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
-        """Whether friction between each pair of blocks (n, 2) has the torsion of a spread pressure, (n,) bool."""
+        """Test whether friction between each pair of blocks (n, 2) has the torsion of a spread pressure, (n,) bool."""
         spread = self.spread[self.between(model, blocks)]
         return spread & self.rigid_between(model, blocks) if self.lands else spread
 
     def stiffness_of(self, named: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """kn and ks of joints by name and faces [Pa/m], (n,) each, with what their blocks give way.
+        """Compute normal and shear stiffness kn, ks of joints by name and faces [Pa/m], (n,) each, with the compliance
+        of their blocks.
 
         faces: of both blocks, (n, 2), or of one that meets something rigid, (n, 1).
         """
@@ -160,37 +165,37 @@ class JointProperties(NamedTuple):
         return together[:, 0], together[:, 1]
 
     def law_of(self, named: np.ndarray, kn: np.ndarray, model: Model, blocks: np.ndarray) -> np.ndarray:
-        """Parameters of the law of joints by name, stiffness kn [Pa/m] and pair of blocks (n, 2), (n, n_parameters)."""
+        """Collect the law parameters of joints by name, stiffness kn [Pa/m] and blocks (n, 2), (n, n_parameters)."""
         return np.ascontiguousarray(self.law[named] if self.rows is None else self.rows(named, kn, model, blocks))
 
 
 class JointGeometry(Protocol):
-    """What a narrow phase knows of the joints, one record of arrays for each dimension (kernels/records.py)."""
+    """Interface of the geometry of joints, one record of arrays for each dimension (kernels/records.py)."""
 
     def __iter__(self) -> Iterator[np.ndarray]:
-        """All of them."""
+        """Iterate over all arrays."""
 
     @property
     def keys(self) -> np.ndarray:
-        """Two numbers by which each joint is known again, (n_joints, 2); with the features, each point."""
+        """Keys of joints, two numbers each, (n_joints, 2); with the features, keys of the points."""
 
     @property
     def faces(self) -> np.ndarray:
-        """The two faces of each joint (model.topology), (n_joints, 2)."""
+        """Two faces of each joint (model.topology), (n_joints, 2)."""
 
     @property
     def features(self) -> np.ndarray:
         """Feature of its joint that each contact point is, a number within the joint, (n_points,)."""
 
     def kept(self) -> Self:
-        """The same with a copy of what changes."""
+        """Return a record with a copy of the arrays that change."""
 
     def settled(self) -> Self:
-        """What is still asked for when points stay where they were placed."""
+        """Return the part of the geometry that is used when points stay where they were placed."""
 
 
 class JointArrays(NamedTuple):
-    """All that there is of the joints of one moment."""
+    """Arrays of all joints at one moment: stiffness and law, geometry, contact state."""
 
     joints: Joints
     geometry: JointGeometry
@@ -198,27 +203,29 @@ class JointArrays(NamedTuple):
 
     @property
     def whole(self) -> np.ndarray:
-        """Which points are those of faces over which pressure is integrated, (n_points,) bool."""
+        """Points of faces over which pressure is integrated, (n_points,) bool."""
         if not len(self.joints.integrated):
             return np.zeros(len(self.joints.kn), bool)
         return (self.joints.integrated == INTEGRATED)[self.joints.owners]
 
     @property
     def closed(self) -> np.ndarray:
-        """How far the springs of all points are closed [m], (n_points,); those of elastic faces by their own gaps."""
+        """Closure of the normal springs of all points [m], (n_points,); points of elastic faces by their own gaps."""
         kn = self.joints.kn
         closed = self.contacts.normal / np.where(kn > 0.0, kn, 1.0)
         return np.where(self.whole, -self.contacts.gaps, closed) if len(self.joints.integrated) else closed
 
     @property
     def pressed(self) -> np.ndarray:
-        """Twice the energy in the springs of all points along their normals [J], (n_points,)."""
+        """Twice the energy in the normal springs of all points [J], (n_points,)."""
         normal, kn = self.contacts.normal, self.joints.kn
         return normal * self.closed if len(self.joints.integrated) else normal**2 / np.where(kn > 0.0, kn, 1.0)
 
 
 def empty_contacts(n_joints: int, n_points: int, dimension: int, n_memory: int, elastic: bool = False) -> Contacts:
-    """Contacts that carry nothing. elastic: there are faces over which pressure is integrated."""
+    """Make contacts without forces. elastic: pressure is integrated over some faces. elastic: there are faces over
+    which pressure is integrated.
+    """
     return Contacts(
         gaps=np.zeros(n_points),
         shear=np.zeros((n_points, dimension - 1)),
@@ -243,7 +250,7 @@ def joints_of(
     torsion: np.ndarray = NO_SHARES,
     lone: np.ndarray | bool = False,
 ) -> MovingJoints:
-    """Joints of pairs of faces with their stiffness and law; frames, levers and points are yet to be placed.
+    """Make joints of pairs of faces with their stiffness and law; frames, levers and points are yet to be placed.
 
     starts: first point of each joint, (n_joints + 1,); areas: of the joints [m²], (n_joints,); shares: of it that
     belong to each point, (n_points,); torsion: in space, as FixedJoints.torsion, (n_joints,); lone: joints of an edge
@@ -275,19 +282,19 @@ def joints_of(
 
 
 def points_in_use(joints: Joints) -> np.ndarray:
-    """Points that can carry a force, (n_points,) bool; in space joints that move have room for more than they have."""
+    """Test which points can carry a force, (n_points,) bool; in space joints that move have spare points."""
     return joints.kn > 0.0
 
 
 def points_of(starts: np.ndarray, joints: np.ndarray) -> np.ndarray:
-    """All points of these joints, joint by joint."""
+    """List all points of these joints, joint by joint."""
     counts = starts[joints + 1] - starts[joints]
     before = np.concatenate([[0], np.cumsum(counts)])[:-1]
     return np.repeat(starts[joints] - before, counts) + np.arange(counts.sum())
 
 
 def only_points(joints: Joints, kept: np.ndarray) -> Joints:
-    """The joints with some of their points only, which carry what they do by themselves; kept: (n_points,) bool."""
+    """Reduce joints to some of their points, which keep their own forces; kept: (n_points,) bool."""
     starts = np.concatenate([[0], np.cumsum(kept)])[joints.starts]
     own = ("places",) if isinstance(joints, FixedJoints) else ("frames", "levers", "points")
     return joints._replace(

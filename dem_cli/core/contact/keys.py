@@ -1,4 +1,4 @@
-"""Keys by which a joint or a contact point is known again: the same row of whole numbers."""
+"""Keys that identify a joint or a contact point across detections: rows of whole numbers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dem_cli.core.model.model import Model
 
 
 def same_rows(old: np.ndarray, new: np.ndarray) -> np.ndarray:
-    """Which of the old rows (n_old, k) each of the new ones (n_new, k) equals, −1: none, (n_new,).
+    """Find for each of the new rows (n_new, k) the equal one of the old rows (n_old, k), −1: none, (n_new,).
 
     Numbers are whole and not negative; of several equal rows the first counts.
     """
@@ -24,7 +24,7 @@ def same_rows(old: np.ndarray, new: np.ndarray) -> np.ndarray:
 
 
 def face_names(model: Model) -> list[int]:
-    """A number for each face that says whose it is and which: other blocks change nothing, (n_faces,)."""
+    """Compute a number that identifies each face whatever other blocks there are, (n_faces,)."""
     names, part_faces = [], model.topology.part_faces
     for part, block in enumerate(model.part_blocks):
         of_block = part - int(np.searchsorted(model.part_blocks, block))

@@ -1,4 +1,4 @@
-"""Where the contact points of a joint are: vertices of its profile, or the places of a rule of integration."""
+"""Places of the contact points of a joint: vertices of its profile, or the points of a rule of integration."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SECTION_SHARES = (0.098318572, 0.09772978, 0.095683014, 0.084577732, 0.057252655
 
 
 class PointLayout(NamedTuple):
-    """Contact points of one named joint. Without `sides` the joint is plane and has `points` of them.
+    """Layout of the contact points of one named joint. Without `sides` the joint is plane and has `points` of them.
 
     In space a plane joint has points at the corners of the overlap, and so many along each of its sides
     (contact/area_rules.py), or one at its centre besides.
@@ -47,14 +47,14 @@ class PointLayout(NamedTuple):
 
 
 class ProfileFault(NamedTuple):
-    """Why joints cannot have a profile."""
+    """Reason why joints cannot have a profile."""
 
     key: str  # of its table
     why: str  # as users read it
 
 
 def too_steep(between: Sequence[str], length: float, slope: float) -> ProfileFault | None:
-    """Of the profile over a joint of this length [m] whose steepest side has this slope; None: it is not."""
+    """Check the steepest slope of the profile over a joint of this length [m]; returns the fault or None."""
     if slope <= STEEPEST_SIDE:
         return None
     a, b = between
@@ -66,7 +66,7 @@ def too_steep(between: Sequence[str], length: float, slope: float) -> ProfileFau
 
 
 def too_deep(between: Sequence[str], rise: float, thickness: float) -> ProfileFault | None:
-    """Of the profile that takes this much [m] from block b, which is so thick [m] behind the joint; None: it is not."""
+    """Check that the rise of a profile [m] is less than the thickness of block b behind the joint [m]; else a fault."""
     if rise < thickness:
         return None
     a, b = between
@@ -80,7 +80,7 @@ def too_deep(between: Sequence[str], rise: float, thickness: float) -> ProfileFa
 def draw(
     layout: PointLayout, key: tuple[int, ...], length: float, mirrored: bool = False
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Contact points of a joint of this length [m]: places [m], initial gaps [m], shares of the area [-].
+    """Draw the contact points of a joint of this length [m]: places [m], initial gaps [m], shares of the area [-].
 
     places: along the joint, increasing from 0 to its length; gaps: 0 at the two ends of the side in contact;
     shares: of the points of a plane joint they add up to 1, of a profile each two neighbours do.
@@ -114,7 +114,8 @@ def draw(
 
 
 def steepest(layout: PointLayout, length: float) -> float:
-    """Largest slope of a side of a joint of this length [m] against the one that it rests on [-]; 0 where plane.
+    """Compute the largest slope of a side of a joint of this length [m] against the one that it rests on [-]; 0 where
+    plane.
 
     Of profiles with ranges: the largest of many that are drawn.
     """
@@ -126,7 +127,8 @@ def steepest(layout: PointLayout, length: float) -> float:
 
 @cache
 def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Places from 0 to 1 and weights of the Gauss–Lobatto rule with n ≥ 2 points, each (n,); the weights add up to 1.
+    """Compute the Gauss–Lobatto rule with n ≥ 2 points: places from 0 to 1 and weights, each (n,); the weights add up
+    to 1.
 
     Exact for polynomials up to degree 2n − 3: from three points on, a joint under bending has the section modulus
     and the moment of inertia of a rectangle. Source: Abramowitz and Stegun 25.4.32. Nobody may write to them.
@@ -149,7 +151,7 @@ def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
 
 @cache
 def section() -> tuple[np.ndarray, np.ndarray]:
-    """Places from 0 to 1 and weights of the rule with SECTION points, each (SECTION,); the weights add up to 1.
+    """Compute the rule with SECTION points: places from 0 to 1 and weights, each (SECTION,); the weights add up to 1.
 
     Exact up to degree 3. Nobody may write to them.
     """

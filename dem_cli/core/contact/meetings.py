@@ -1,4 +1,4 @@
-"""Where convex polyhedra meet: contact points of pairs of parts in space, before there are joints."""
+"""Contact points of pairs of convex polyhedra in space, before there are joints."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from dem_cli.core.model.model import Model
 
 
 class Meetings(NamedTuple):
-    """Where pairs of parts meet, before there are joints; a pair owns points starts[j]:starts[j + 1]."""
+    """Contact points of pairs of parts, before there are joints; a pair owns points starts[j]:starts[j + 1]."""
 
     kinds: np.ndarray  # as SpatialGeometry.kinds, (n,)
     starts: np.ndarray  # (n + 1,)
@@ -33,14 +33,16 @@ class Meetings(NamedTuple):
 
     @property
     def widths(self) -> np.ndarray:
-        """Twice the area of overlaps of faces over their perimeter; of lone contacts, how far they reach [m], (n,)."""
+        """Width of each contact [m], (n,): of faces twice the overlap area over its perimeter; of lone contacts their
+        reach.
+        """
         sides = np.linalg.norm(self.places[following(self.starts)] - self.places, axis=1)
         perimeters, lone = np.bincount(self.owners, sides, len(self.kinds)), self.kinds != FACES
         return np.where(lone, self.measures[:, MARGIN], 2.0 * self.measures[:, AREA] / np.where(lone, 1.0, perimeters))
 
 
 def polyhedra(model: Model, corners: np.ndarray) -> Polyhedra:
-    """The parts of a model in place, as the kernels read them; corners: as `corners_of`."""
+    """Collect the parts of a model in place, as the kernels read them; corners: as `corners_of`."""
     topology = model.topology
     areas = face_areas(corners, topology)
     normals = areas / np.linalg.norm(areas, axis=1)[:, None]
@@ -51,12 +53,12 @@ def polyhedra(model: Model, corners: np.ndarray) -> Polyhedra:
 
 
 def room_of(solids: Polyhedra) -> np.ndarray:
-    """Room for what any two faces have in common, as kernels/overlap.py reads it."""
+    """Allocate work space for the overlap of any two faces, as kernels/overlap.py reads it."""
     return np.zeros((5, 2 * int(np.diff(solids.face_starts).max(initial=0)) + 2, 3))
 
 
 def meetings(model: Model, faces: Faces, corners: np.ndarray) -> Meetings:
-    """Contact points of pairs of parts, where these are now."""
+    """Compute the contact points of pairs of parts where these are now."""
     solids = polyhedra(model, corners)
     n, sizes = len(faces.parts), np.diff(solids.face_starts)
     room = np.concatenate([[0], np.cumsum(sizes[faces.faces].sum(axis=1))]).astype(np.int64)

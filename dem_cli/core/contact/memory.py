@@ -1,4 +1,4 @@
-"""Memory of contact points across a detection, carried by key: joint and feature."""
+"""Memory of contact points across a detection, carried over by key: joint and feature."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from dem_cli.core.contact.keys import same_rows
 
 
 def carry_memory(narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArrays, properties: JointProperties) -> None:
-    """Gives the points of `new` what the same points of `old` remember, and their stiffness.
+    """Copy memory and stiffness of the points of `old` to the same points of `new`.
 
     A point is the same when its key is. Where a corner turned over to its other face, the point of the same two blocks
     that is nearest takes over. properties: their law gives normal forces of new points by their overlap. Where it is
     bonded, and on elastic faces, points go on from the gap that their forces belong to, that of the step before: else
-    the next step would find other forces at the same gap, and book their change as lost.
+    the next step would find other forces at the same gap, and count their change as lost.
     """
     match = same_rows(old.geometry.keys, new.geometry.keys)
     points = _same_points(old, new, match)
@@ -35,7 +35,7 @@ def carry_memory(narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArray
 
 
 def _same_points(old: JointArrays, new: JointArrays, match: np.ndarray) -> np.ndarray:
-    """The old point that each new one is, −1: none, (n_points,). match: of joints, as `same_rows`."""
+    """Find the old point that each new one is, −1: none, (n_points,). match: of joints, as `same_rows`."""
     before, now = old.joints.owners, match[new.joints.owners]
     features = new.geometry.features
     here, there = np.flatnonzero((now >= 0) & (features >= 0)), np.flatnonzero(old.geometry.features >= 0)
@@ -64,7 +64,7 @@ def _copy(
 def _adopt(
     narrow: AnyMovingNarrowPhase, old: JointArrays, new: JointArrays, orphans: np.ndarray, newborn: np.ndarray
 ) -> None:
-    """Memory of loaded joints whose faces changed goes to the nearest point of a new joint of the same blocks."""
+    """Move the memory of loaded joints whose faces changed to the nearest point of a new joint of the same blocks."""
     joints, contacts, memory = new.joints, new.contacts, old.contacts
     for i in orphans:
         heirs = np.array([j for j in newborn if (joints.blocks[j] == old.joints.blocks[i]).all()], int)

@@ -1,4 +1,4 @@
-"""Broad phase in space: pairs of parts whose boxes come near each other, at a cost linear in the number of parts."""
+"""Broad phase in space: pairs of parts with close bounding boxes, at a cost linear in the number of parts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ MOST_CELLS = 1 << 20  # along one axis
 def near_boxes(
     corners: np.ndarray, part_starts: np.ndarray, part_blocks: np.ndarray, fixed: np.ndarray, reach: float
 ) -> np.ndarray:
-    """Pairs of parts a < b of different blocks, not both fixed, with boxes closer than `reach` [m], (n, 2), sorted.
+    """Find pairs of parts a < b of different blocks, not both fixed, with boxes closer than `reach` [m], (n, 2),
+    sorted.
 
     corners: of all parts in place [m], (n_vertices, 3); part p has part_starts[p]:part_starts[p + 1].
     """
@@ -49,7 +50,7 @@ def near_boxes(
 
 
 def _filled(fill: Callable[..., int], shapes: list[tuple[int, ...]]) -> list[np.ndarray]:
-    """Arrays of whole numbers that a kernel fills and says how far; with more room where it was not enough."""
+    """Fill arrays of whole numbers by a kernel, again with more room where it was not enough."""
     while True:
         arrays = [np.empty(shape, np.int64) for shape in shapes]
         count = fill(*arrays)

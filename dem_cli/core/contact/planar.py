@@ -24,7 +24,7 @@ NARROWEST = 0.1  # of the shorter edge: the overlap that a joint has stiffness f
 
 
 def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
-    """All pairs of faces of different blocks that are closer than `reach` [m].
+    """Find all pairs of faces of different blocks that are closer than `reach` [m].
 
     corners: world coordinates of all corners [m], (n_vertices, 2). Two fixed blocks have no joint. Two convex parts
     have one, and more where they meet corner to corner: those that may come to touch next.
@@ -52,7 +52,7 @@ def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
 def points(
     model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: Chains | None = None
 ) -> tuple[MovingJoints, PlanarGeometry]:
-    """Joints of pairs of edges with stiffness from their present overlap, and their geometry; not yet placed.
+    """Make joints of pairs of edges with stiffness from their present overlap, and their geometry; not yet placed.
 
     chains: of the joints of the start, which alone have a profile or more than two points; None: these are they.
     """
@@ -79,12 +79,12 @@ def points(
 
 
 def place(joints: Joints, geometry: PlanarGeometry, contacts: Contacts, bodies: Bodies) -> None:
-    """Gaps of all contacts, frames, levers and points of all joints, where the blocks are now; compiled."""
+    """Update gaps of all contacts, frames, levers and points of all joints to where the blocks are now; compiled."""
     (measure_profiles if len(geometry.profile) else measure)(joints, geometry, contacts, bodies)
 
 
 def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float | np.ndarray) -> np.ndarray:
-    """Edges that share a length, (n,) bool; those that meet corner to corner cannot carry force, to first order.
+    """Test which edges share a length, (n,) bool; edges that meet corner to corner cannot carry force, to first order.
 
     reach: [m], one for all or (n,).
     """
@@ -93,7 +93,7 @@ def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float | np.
 
 
 def facing(model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:
-    """Edges that look at each other, nearly parallel, over a length of more than `least` [m], (n,) bool."""
+    """Test which edges look at each other, nearly parallel, over a length of more than `least` [m], (n,) bool."""
     edges = edges_of(model, faces)
     along, against = corners[edges[:, 1]] - corners[edges[:, 0]], corners[edges[:, 3]] - corners[edges[:, 2]]
     parallel = np.abs(cross(along, against)) <= sine * np.hypot(*along.T) * np.hypot(*against.T)
@@ -101,12 +101,12 @@ def facing(model: Model, faces: Faces, corners: np.ndarray, sine: float, least: 
 
 
 def open_gaps(model: Model, faces: Faces, corners: np.ndarray, steepest: float, bare: float) -> np.ndarray:
-    """Largest gap of each pair of edges that look at each other [m], (n,); 0 where they do not or overlap."""
+    """Compute the largest gap of each pair of edges that look at each other [m], (n,); 0: they do not, or overlap."""
     return widest_gaps(edges_of(model, faces), corners, steepest, bare)
 
 
 def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
-    """Pairs of edges that overlap by more than `least` [m], with both ends of the overlap."""
+    """Find pairs of edges that overlap by more than `least` [m], with both ends of the overlap."""
     low, high = overlap_ends(edges_of(model, faces), corners)
     kept = faces.where(high - low > least)
     edges, lengths = edges_of(model, kept), (high - low)[high - low > least]
@@ -125,7 +125,7 @@ def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> Draw
 
 
 def corner_to_corner(edges: np.ndarray, corners: np.ndarray, reach: float | np.ndarray) -> np.ndarray:
-    """Edges under an angle that meet with an end each, closer than `reach` [m], (n,) bool; 2D."""
+    """Test which edges meet at an angle, end to end, closer than `reach` [m], (n,) bool; 2D."""
     a0, a1, b0, b1 = (corners[edges[:, i]] for i in range(4))
     a, b = ((end - start) / np.hypot(*(end - start).T)[:, None] for start, end in ((a0, a1), (b0, b1)))
     angled = np.abs(cross(a, b)) > PARALLEL
@@ -134,7 +134,7 @@ def corner_to_corner(edges: np.ndarray, corners: np.ndarray, reach: float | np.n
 
 
 def _cotangents(model: Model) -> np.ndarray:
-    """Cotangent of the inner angle at each corner, (n_vertices,)."""
+    """Compute the cotangent of the inner angle at each corner, (n_vertices,)."""
     first, after = model.topology.ends.T
     leaving = model.vertices[after] - model.vertices[first]
     arriving = np.empty_like(leaving)
@@ -145,24 +145,26 @@ def _cotangents(model: Model) -> np.ndarray:
 
 
 def corners_of(shape: BlockShapes, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
-    """Corners of all parts in place [m], (n_vertices, 2)."""
+    """Compute corners of all parts in world coordinates [m], (n_vertices, 2)."""
     corners = np.empty_like(shape.corner_arms)
     place_corners(positions, orientations, shape.corner_blocks, shape.corner_arms, corners)
     return corners
 
 
 def left_out(model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
-    """Nothing: in the plane each two edges have a joint of their own."""
+    """Return no pairs and no areas: in the plane each two edges have a joint of their own."""
     return np.zeros((0, 2), np.int64), np.zeros(0)
 
 
 def bonds(model: Model, geometry: PlanarGeometry) -> np.ndarray:
-    """Edges that overlap; not those that meet end to end."""
+    """Test which joints have edges that overlap; not those that meet end to end."""
     return ~end_to_end(model, geometry)
 
 
 def end_to_end(model: Model, geometry: PlanarGeometry) -> np.ndarray:
-    """Joints of the start without a length, as where four blocks have a corner in one place, (n_joints,) bool."""
+    """Test which joints of the start have no length, as where four blocks have a corner in one place, (n_joints,)
+    bool.
+    """
     sizes = np.diff(model.part_starts)
     corners = model.vertices + np.repeat(model.centroids[model.part_blocks], sizes, axis=0)
     whole = lengths_of(geometry.edges, corners).min(axis=1, initial=np.inf)
@@ -170,12 +172,16 @@ def end_to_end(model: Model, geometry: PlanarGeometry) -> np.ndarray:
 
 
 def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Chains | None:
-    """Points that come back wherever the same faces meet again; None: all joints have two points, at their ends."""
+    """Collect points that come back wherever the same faces meet again; None: all joints have two points, at their
+    ends.
+    """
     return made_chains(model, faces, corners, properties) if properties.profiled else None
 
 
 def take_over(old: JointArrays, new: JointArrays, match: np.ndarray, known: np.ndarray) -> None:
-    """Of new joints, what the old ones with the same faces were like; match: number of the old one, −1: none."""
+    """Copy initial penetrations of old joints to new ones with the same faces; match: number of the old one, −1:
+    none.
+    """
     go_on = np.flatnonzero(match >= 0)
     before, now = cast(PlanarGeometry, old.geometry), cast(PlanarGeometry, new.geometry)
     now.sunk[:] = np.inf
@@ -183,22 +189,22 @@ def take_over(old: JointArrays, new: JointArrays, match: np.ndarray, known: np.n
 
 
 def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
-    """Points that go on keep stiffness and forces."""
+    """Copy stiffness and forces of points that go on."""
     new.contacts.normal[target], new.contacts.shear[target] = old.contacts.normal[source], old.contacts.shear[source]
     new.joints.kn[target], new.joints.ks[target] = old.joints.kn[source], old.joints.ks[source]
 
 
 def book(old: JointArrays, new: JointArrays, known: np.ndarray, pressed: PressedLaw) -> None:
-    """Nothing: points keep their stiffness."""
+    """Do nothing: points in the plane keep their stiffness, so that no energy is exchanged."""
 
 
 def sink(geometry: PlanarGeometry, joint: int, depth: float) -> None:
-    """A joint counts its gaps from at most this depth [m]: the recess of a profile, which is no reason to push."""
+    """Set the penetration from which a joint counts its gaps, at most this depth [m]: the recess of a profile."""
     geometry.sunk[joint] = min(geometry.sunk[joint], depth)
 
 
 def microrotations(joints: Joints, geometry: PlanarGeometry) -> np.ndarray:
-    """Largest microrotation of each joint from the side that it rests on at the start [rad], (n_joints,)."""
+    """Compute the largest microrotation of each joint from the side that it rests on at first [rad], (n_joints,)."""
     angles, profile = np.zeros(len(joints.blocks)), geometry.profile
     if not len(profile):
         return angles
@@ -212,7 +218,7 @@ def microrotations(joints: Joints, geometry: PlanarGeometry) -> np.ndarray:
 def profile_fault(
     model: Model, faces: Faces, corners: np.ndarray, layout: PointLayout, among: np.ndarray
 ) -> ProfileFault | None:
-    """Whether a profile is too steep on the shortest of these joints (n,) bool that has it."""
+    """Check that a profile is not too steep on the shortest of these joints (n,) bool that has it; else a fault."""
     edges = edges_of(model, faces)
     along = corners[edges[:, 1]] - corners[edges[:, 0]]
     lengths, whole = overlap_lengths(edges, corners), lengths_of(edges, corners)[:, 1]
@@ -227,7 +233,7 @@ def profile_fault(
 
 
 def corner_shares(joints: Joints, geometry: PlanarGeometry, corners: np.ndarray) -> np.ndarray:
-    """Share of the edge of a in the normal of each point: 1 but at ends near or beyond a corner of a, (n_points,)."""
+    """Weight of edge a in the normal of each point: 1 but at ends near or beyond a corner of a, (n_points,)."""
     a0, a1, b0, b1 = (corners[geometry.edges[:, i]] for i in range(4))
     along_a, along_b = (a1 - a0) * geometry.scales[:, [1]], (b1 - b0) * geometry.scales[:, [2]]
     both = along_a - along_b

@@ -40,7 +40,8 @@ INNER = np.iinfo(np.int32).max  # features of points within an outline: from her
 
 
 def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
-    """All pairs of parts of different blocks that are closer than `reach` [m], by the faces that look at each other.
+    """Find all pairs of parts of different blocks that are closer than `reach` [m], by the faces that look at each
+    other.
 
     Two fixed blocks have no joint. Pairs are ordered by parts, whatever finds them.
     """
@@ -55,7 +56,9 @@ def find(model: Model, corners: np.ndarray, reach: float) -> Faces:
 def _facing(
     model: Model, corners: np.ndarray, pairs: np.ndarray, reach: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of pairs of parts: how far they are apart, by which faces, and what else they share (kernels/separation.py)."""
+    """Distance of pairs of parts, the faces that look at each other, and other areas that they share
+    (separation.py).
+    """
     solids = polyhedra(model, corners)
     faces, separation, beside = np.zeros((len(pairs), 2), np.int64), np.empty(len(pairs)), np.zeros(len(pairs))
     separations(solids, pairs, reach, room_of(solids), separation, faces, beside)
@@ -63,7 +66,7 @@ def _facing(
 
 
 def left_out(model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
-    """Blocks that also touch beside their joint, and the area of that [m²], (n, 2) and (n,).
+    """Find blocks that also touch beside their joint, and the area of that [m²], (n, 2) and (n,).
 
     Two convex parts have one joint, in one plane: where one of them lies on both sides of a kink that is flatter than
     contact can tell, only the larger side counts. reach: [m].
@@ -86,7 +89,7 @@ def left_out(model: Model, corners: np.ndarray, reach: float) -> tuple[np.ndarra
 
 
 def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float | np.ndarray) -> np.ndarray:
-    """Pairs of faces that share an area, a corner or an edge within a face, or cross with two edges, (n,) bool.
+    """Test which pairs of faces share an area, a corner or edge within a face, or cross with two edges, (n,) bool.
 
     Blocks that meet edge to edge or corner to corner cannot carry force, to first order.
     reach: [m], one for all or (n,).
@@ -96,7 +99,7 @@ def touching(model: Model, faces: Faces, corners: np.ndarray, reach: float | np.
 
 
 def _on_joints(model: Model, faces: Faces, corners: np.ndarray, found: Meetings, reaches: np.ndarray) -> np.ndarray:
-    """Edges and corners that meet a block where another part of their block lies on it with a face, (n,) bool.
+    """Test which edges and corners meet a block where another part of their block lies on it with a face, (n,) bool.
 
     That edge is one of the parts, not of the block: what it carries is carried by the face. reaches: [m], (n,).
     """
@@ -119,7 +122,7 @@ def _on_joints(model: Model, faces: Faces, corners: np.ndarray, found: Meetings,
 
 
 def _mean_arms(found: Meetings, shares: np.ndarray) -> np.ndarray:
-    """Mean distance of the points of each joint from their centre, by their shares [m], (n,)."""
+    """Compute the mean distance of the points of each joint from their centre, by their shares [m], (n,)."""
     starts = found.starts[:-1]
     owners = np.repeat(np.arange(len(starts)), np.diff(found.starts))
     totals = np.add.reduceat(shares, starts)
@@ -131,7 +134,8 @@ def _mean_arms(found: Meetings, shares: np.ndarray) -> np.ndarray:
 def points(
     model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: None = None
 ) -> tuple[MovingJoints, SpatialGeometry]:
-    """Joints with contact points at the corners of their overlap, and stiffness by the area of each; not yet placed.
+    """Make joints with contact points at the corners of their overlap, and stiffness by the area of each; not yet
+    placed.
 
     Where the layout of a joint asks for more, there are points within the outline as well.
     """
@@ -161,7 +165,7 @@ def points(
 
 
 def _with_centres(found: Meetings, shares: np.ndarray, centred: np.ndarray) -> tuple[Meetings, np.ndarray]:
-    """A point at the centroid of some joints, (n,) bool: area, first and polar moment of each are exact.
+    """Add a point at the centroid of some joints, (n,) bool: area, first and polar moment of each are exact.
 
     Corners keep the share β of their areas and the centre gets the rest, β = polar moment / Σ w r².
     """
@@ -182,7 +186,7 @@ def _with_centres(found: Meetings, shares: np.ndarray, centred: np.ndarray) -> t
 
 
 def _with_rules(found: Meetings, shares: np.ndarray, sides: np.ndarray) -> tuple[Meetings, np.ndarray]:
-    """So many points along each side of joints (n,), fewer than LEAST: none but those that there are."""
+    """Add so many points along each side of joints (n,), fewer than LEAST: none but those that there are."""
     inner = rules_over(found, sides)
     counts = np.diff(inner.starts)
     if not counts.any():
@@ -199,31 +203,31 @@ def _with_rules(found: Meetings, shares: np.ndarray, sides: np.ndarray) -> tuple
 
 
 def rules_over(found: Meetings, sides: np.ndarray) -> InnerPoints:
-    """Points within the outlines of joints of faces, so many along each side (n,), and in column 3 their gaps [m]."""
+    """Quadrature points within the outlines of joints, so many along each side (n,), with gaps [m] in column 3."""
     outlines = np.column_stack([found.places, found.gaps])
     centres = np.column_stack([found.measures[:, CENTRE : CENTRE + 3], found.measures[:, GAP]])
     return inner_points(outlines, found.starts, centres, sides)
 
 
 def _areas(model: Model, found: Meetings) -> np.ndarray:
-    """Of overlaps their own; of lone contacts LONE of the median face for each point [m²], (n,)."""
+    """Areas of contacts [m²], (n,): of overlaps their own, of lone contacts LONE of the median face for each point."""
     lone = LONE * median_face(model) * np.diff(found.starts)
     return np.where(found.kinds != FACES, lone, found.measures[:, AREA])
 
 
 def _shares(found: Meetings) -> np.ndarray:
-    """Share of its joint that belongs to each point, (n_points,)."""
+    """Compute the share of its joint that belongs to each point, (n_points,)."""
     return found.weights / np.bincount(found.owners, found.weights, len(found.kinds))[found.owners]
 
 
 def median_face(model: Model) -> float:
-    """Median area of all faces that can be touched [m²]."""
+    """Compute the median area of all faces that can be touched [m²]."""
     areas = model.faces.areas
     return median(areas[~model.inner_faces]) if len(areas) else 0.0
 
 
 def place(joints: Joints, geometry: SpatialGeometry, contacts: Contacts, bodies: Bodies) -> None:
-    """Gaps, frames, levers and points as they were found; blocks are where they were then."""
+    """Set gaps, frames, levers and points as they were found; blocks are where they were then."""
     owners = joints.owners
     frames = geometry.axes[owners]
     joints.frames[:], joints.points[:], contacts.gaps[:] = frames, geometry.places, geometry.gaps
@@ -236,19 +240,19 @@ def place(joints: Joints, geometry: SpatialGeometry, contacts: Contacts, bodies:
 
 
 def corners_of(shape: BlockShapes, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
-    """Corners of all parts in place [m], (n_vertices, 3)."""
+    """Compute corners of all parts in world coordinates [m], (n_vertices, 3)."""
     turns = matrices(orientations)[shape.corner_blocks]
     return positions[shape.corner_blocks] + (turns * shape.corner_arms[:, None, :]).sum(axis=2)
 
 
 def facing(model: Model, faces: Faces, corners: np.ndarray, sine: float, least: np.ndarray) -> np.ndarray:
-    """Faces that look at each other, nearly parallel, over a width of more than `least` [m], (n,) bool."""
+    """Test which faces look at each other, nearly parallel, over a width of more than `least` [m], (n,) bool."""
     found, (a, b) = meetings(model, faces, corners), shapes_of(corners).normals(corners, model.topology)[faces.faces.T]
     return (found.kinds == FACES) & (np.linalg.norm(np.cross(a, b), axis=1) <= sine) & (found.widths > least)
 
 
 def open_gaps(model: Model, faces: Faces, corners: np.ndarray, steepest: float, bare: float) -> np.ndarray:
-    """Largest gap at the corners of overlaps of faces that look at each other [m], (n,); 0: none or they overlap."""
+    """Largest gap at the corners of overlaps of faces that look at each other [m], (n,); 0: none, or overlap."""
     if not len(faces.parts):
         return np.zeros(0)
     found = meetings(model, faces, corners)
@@ -262,7 +266,7 @@ def open_gaps(model: Model, faces: Faces, corners: np.ndarray, steepest: float, 
 
 
 def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> DrawnFaces:
-    """Outlines of the pairs that are wider than `least` [m]; places on both parts are opposite, across the gap."""
+    """Find outlines of the pairs wider than `least` [m]; places on both parts are opposite, across the gap."""
     found = meetings(model, faces, corners)
     kept, reaches = found.widths > least, np.full(len(faces.parts), max(least, 0.0))
     kept &= (found.measures[:, MARGIN] > least) & ~_on_joints(model, faces, corners, found, reaches)
@@ -279,17 +283,17 @@ def drawn(model: Model, faces: Faces, corners: np.ndarray, least: float) -> Draw
 
 
 def bonds(model: Model, geometry: SpatialGeometry) -> np.ndarray:
-    """Faces that lie on each other, (n_joints,) bool; not edges and corners on faces."""
+    """Test which joints have faces that lie on each other, (n_joints,) bool; not edges and corners on faces."""
     return along_each_other(model, geometry.kinds, geometry.keys)
 
 
 def end_to_end(model: Model, geometry: SpatialGeometry) -> np.ndarray:
-    """None, (n_joints,) bool: in space corners that meet share no joint."""
+    """Return False for all joints, (n_joints,) bool: in space corners that meet share no joint."""
     return np.zeros(len(geometry.kinds), bool)
 
 
 def along_each_other(model: Model, kinds: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Pairs of faces (n, 2) of undeformed blocks that lie along each other, (n,) bool; of kinds (n,)."""
+    """Test which pairs of faces (n, 2) of undeformed blocks lie along each other, (n,) bool; of kinds (n,)."""
     return _along(model.faces.normals, kinds, faces)
 
 
@@ -299,14 +303,15 @@ def _along(normals: np.ndarray, kinds: np.ndarray, faces: np.ndarray) -> np.ndar
 
 
 def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> None:
-    """Nothing comes back: joints in space have no profile."""
+    """Return None: joints in space without motion have no points that come back."""
 
 
 def profile_fault(
     model: Model, faces: Faces, corners: np.ndarray, layout: PointLayout, among: np.ndarray
 ) -> ProfileFault | None:
-    """Whether a cap is none that space knows, too steep on the narrowest of these joints (n,) bool that has it, or
-    deeper than the thinnest block."""
+    """Check the cap of these joints (n,) bool: its shape, its slope on the narrowest joint, its rise on the thinnest
+    block. Returns the fault or None.
+    """
     found = meetings(model, faces, corners)
     has_it = among & (found.kinds == FACES) & np.array([has_cap(layout, frame[:3]) for frame in found.frames], bool)
     if fault := odd_or_uneven(layout):
@@ -328,5 +333,5 @@ def profile_fault(
 
 
 def _thickness(model: Model, corners: np.ndarray, part: int, normal: np.ndarray) -> float:
-    """How far a part reaches along a normal [m]."""
+    """Compute the extent of a part along a normal [m]."""
     return float(np.ptp(product(corners[model.part_starts[part] : model.part_starts[part + 1]], normal)))

@@ -52,7 +52,7 @@ SKINS = 2.0  # of the reach of detection: how high over a face what lies on it i
 def points(
     model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties, chains: Caps | None = None
 ) -> tuple[MovingJoints, SpatialMotion]:
-    """Joints with room for contact points, and what is known of their geometry; points come when they are placed.
+    """Make joints with room for contact points, and their geometry; points come when they are placed.
 
     chains: caps of the joints of the start, which alone have one; None: these are they, or there are none.
     """
@@ -109,14 +109,14 @@ def points(
 
 
 def _median_free_face(model: Model) -> float:
-    """Median area of the faces of blocks that can move [m²]: those of a large base say nothing of a stone on it."""
+    """Compute the median area of the faces of blocks that can move [m²]: a large base says nothing of a stone on it."""
     areas = model.faces.areas
     free = ~model.inner_faces & ~model.fixed[model.part_blocks[model.topology.face_parts]]
     return median(areas[free]) if free.any() else median_face(model)
 
 
 def _scales(model: Model, faces: Faces, properties: JointProperties, own: np.ndarray) -> np.ndarray:
-    """SpatialMotion.scales of pairs of faces, (n, 10). own: Caps.corners of them, (n,).
+    """Compute SpatialMotion.scales of pairs of faces, (n, 10). own: Caps.corners of them, (n,).
 
     Where faces meet that did not at the start, they have their corners and the centre.
     """
@@ -137,14 +137,14 @@ def _scales(model: Model, faces: Faces, properties: JointProperties, own: np.nda
 
 
 def place(joints: Joints, geometry: SpatialMotion, contacts: Contacts, bodies: Bodies) -> None:
-    """Gaps, frames, levers and points where the blocks are now; joints that have no points yet get them."""
+    """Update gaps, frames, levers and points to where the blocks are now; joints that have no points yet get them."""
     if np.isnan(geometry.markers).any():
         renew_fresh(joints, geometry, contacts, bodies)
     measure_spatial(joints, geometry, contacts, bodies)
 
 
 def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.ndarray) -> None:
-    """Forces of points that go on: by their areas, along the tangents that they have now."""
+    """Copy forces of points that go on: by their areas, along the tangents that they have now."""
     grown = new.joints.kn[target] / old.joints.kn[source]
     new.contacts.normal[target] = grown * old.contacts.normal[source]
     before, now = (of.joints.frames[at, 3:].reshape(-1, 2, 3) for of, at in ((old, source), (new, target)))
@@ -154,7 +154,7 @@ def carry(old: JointArrays, new: JointArrays, target: np.ndarray, source: np.nda
 
 
 def take_over(old: JointArrays, new: JointArrays, match: np.ndarray, known: np.ndarray) -> None:
-    """New points of a joint that goes on have traction, slip and memory of the nearest one before, open or not."""
+    """Copy traction, slip and memory of the nearest old point, open or not, to new points of a joint that goes on."""
     owners = new.joints.owners
     fresh = (new.geometry.features >= 0) & ~known & (match[owners] >= 0)
     for j in np.unique(owners[fresh]):
@@ -171,7 +171,8 @@ def take_over(old: JointArrays, new: JointArrays, match: np.ndarray, known: np.n
 
 
 def _soften(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
-    """An edge on a face goes on as soft as the strip over which an elastic face pressed before they turned so far.
+    """Reduce the stiffness of an edge on a face to that of the strip over which an elastic face pressed before the
+    turn.
 
     That strip is narrow and deep: on the area of a lone point the same overlap would push a hundred times as much.
     """
@@ -197,7 +198,9 @@ def _soften(old: JointArrays, new: JointArrays, match: np.ndarray) -> None:
 
 
 def book(old: JointArrays, new: JointArrays, known: np.ndarray, pressed: PressedLaw) -> None:
-    """Energy that went or came with other points: new ones hold what their own gap and memory say, pressed or glued."""
+    """Add the elastic energy exchanged by new and lost points to the energy balance; new ones follow their gap and
+    memory.
+    """
     contacts, joints = new.contacts, new.joints
     fresh = ~known
     overlaps = (contacts.closure - contacts.gaps)[fresh]
@@ -211,26 +214,26 @@ def book(old: JointArrays, new: JointArrays, known: np.ndarray, pressed: Pressed
 
 
 def _held(of: JointArrays) -> float:
-    """In the springs of all points [J]."""
+    """Compute the elastic energy in the springs of all points [J]."""
     used = of.joints.kn > 0.0
     shear = of.contacts.shear[used]
     return 0.5 * float(of.pressed[used].sum() + ((shear**2).sum(axis=1) / of.joints.ks[used]).sum())
 
 
 def bonds(model: Model, geometry: SpatialMotion) -> np.ndarray:
-    """Faces that lie on each other, (n_joints,) bool; not edges and corners on faces."""
+    """Test which joints have faces that lie on each other, (n_joints,) bool; not edges and corners on faces."""
     return along_each_other(model, geometry.kinds, geometry.faces)
 
 
 def sink(geometry: SpatialMotion, joint: int, depth: float) -> None:
-    """Nothing: only profiles have a recess."""
+    """Do nothing: only profiles in the plane have a recess."""
 
 
 def chains_of(model: Model, faces: Faces, corners: np.ndarray, properties: JointProperties) -> Caps | None:
-    """Caps, which come back wherever the same faces meet again; None: all joints are plane."""
+    """Collect caps, which come back wherever the same faces meet again; None: all joints are plane."""
     return made_caps(model, faces, corners, properties)
 
 
 def microrotations(joints: Joints, geometry: SpatialMotion) -> np.ndarray:
-    """Largest microrotation of each joint from the plane that it rests on at the start [rad], (n_joints,)."""
+    """Compute the largest microrotation of each joint from the plane that it rests on at first [rad], (n_joints,)."""
     return geometry.slopes

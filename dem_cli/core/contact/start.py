@@ -1,4 +1,4 @@
-"""Blocks at rest in their first place, the joints that the geometry of the start has, and corners that meet there.
+"""Initial state: blocks at rest in their first place, joints of the undeformed structure, and corners that meet.
 
 Four stones whose corners meet in one place touch aslant. Such a pair carries nothing, to first order: either of them
 can go past the other without another gap that closes. Geometry of the start has no joint there, and where geometry
@@ -27,7 +27,7 @@ TOUCHING_GAP = 1e-6  # faces closer than this share of the smallest edge touch
 
 
 def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0, moves: bool = False) -> Bodies:
-    """All blocks where the model places them, without motion; coordinates from `origin` [m], (d,).
+    """Place all blocks as the model has them, without motion; coordinates from `origin` [m], (d,).
 
     moves: whether geometry does; orientations in space are quaternions then, else rotation vectors that add up.
     """
@@ -45,7 +45,7 @@ def bodies_at_rest(model: Model, origin: np.ndarray | float = 0.0, moves: bool =
 
 
 def _unstrained(model: Model) -> dict[str, np.ndarray]:
-    """Fields of blocks that deform, before they do; none where all blocks are rigid."""
+    """Make the fields of blocks that deform, before they do; empty where all blocks are rigid."""
     if not model.n_modes:
         return {}
     n, d = model.n_blocks, model.dimension
@@ -57,7 +57,7 @@ def _unstrained(model: Model) -> dict[str, np.ndarray]:
 
 
 def _unbent(model: Model) -> dict[str, np.ndarray]:
-    """Fields of quadratic modes; none where no block has them."""
+    """Make the fields of quadratic modes; empty where no block has them."""
     if not len(model.mode_shapes):
         return {}
     n, two = model.n_blocks, 2 * TERMS
@@ -65,13 +65,14 @@ def _unbent(model: Model) -> dict[str, np.ndarray]:
 
 
 def close_touching(contacts: Contacts, smallest: float, near: float = TOUCHING_GAP) -> None:
-    """Gaps that are nothing but round-off become none; near: up to this share of the smallest edge."""
+    """Set gaps within round-off to zero; near: up to this share of the smallest edge."""
     contacts.gaps[np.abs(contacts.gaps) <= near * smallest] = 0.0
 
 
 def bond_touching(model: Model, built: JointArrays, properties: JointProperties, narrow: AnyNarrowPhase) -> None:
-    """Points without a gap start intact, where faces lie on each other: they remember what their law says of a young
-    joint. An edge on a face has no area that a bond could hold. narrow: of the geometry of these joints."""
+    """Set the memory of touching points to an intact bond, where faces lie on each other. An edge on a face has no area
+    that a bond could hold. narrow: of the geometry of these joints.
+    """
     joints, contacts = built.joints, built.contacts
     count = min(properties.intact.shape[1], contacts.memory.shape[1])  # limit analysis remembers nothing
     touching = (contacts.gaps <= 0.0) & narrow.bonds(model, built.geometry)[joints.owners]
@@ -87,7 +88,7 @@ def joints_of_start(
     n_memory: int = 0,
     near: float = TOUCHING_GAP,
 ) -> JointArrays:
-    """Faces that touch in the undeformed structure: what fixed geometry and limit analysis work on.
+    """Find the joints of the undeformed structure, for fixed geometry and limit analysis: faces that touch.
 
     smallest: shortest edge of a block [m] (model.scales); near: gap or overlap, over that, up to which faces touch [-].
     Faces that meet corner to corner are left out: to first order they cannot carry force. All points of a joint lie in
@@ -114,7 +115,7 @@ class CornerMeetings(NamedTuple):
     second_arms: np.ndarray  # the same places from that of the second one [m], (n_places, d)
 
     def shifts(self, bodies: Bodies) -> np.ndarray:
-        """How far the two parts have moved against each other where they met [m], the largest of each pair, (n,)."""
+        """Compute the relative displacement of two parts where they met [m], the largest of each pair, (n,)."""
         if not len(self.parts):
             return np.zeros(0)
         owners = np.repeat(np.arange(len(self.parts)), np.diff(self.starts))
@@ -127,7 +128,7 @@ class CornerMeetings(NamedTuple):
 
 
 def corner_meetings(model: Model, narrow: AnyNarrowPhase, faces: Faces, bodies: Bodies, reach: float) -> CornerMeetings:
-    """Parts that touch at the start, within `reach` [m], and have no joint in its geometry; faces: pairs that are near.
+    """Find parts that touch at the start within `reach` [m] and have no joint; faces: pairs that are near.
 
     narrow: of the geometry of the start.
     """
@@ -151,7 +152,9 @@ def corner_meetings(model: Model, narrow: AnyNarrowPhase, faces: Faces, bodies: 
 def _shared_corners(
     model: Model, parts: np.ndarray, corners: np.ndarray, reach: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Corners of either part that lie on the other one, (n_places, d), and the pair of each, in order, (n_places,)."""
+    """Find corners of either part that lie on the other one, (n_places, d), and the pair of each, in order,
+    (n_places,).
+    """
     topology = model.topology
     normals = shapes_of(corners).normals(corners, topology)
     heights = (normals * corners[topology.ends[:, 0]]).sum(axis=1)

@@ -1,4 +1,4 @@
-"""How far convex polygons are above others: exact, from the lower side of the one and the upper side of the other."""
+"""Vertical clearance between convex polygons, exact: from the lower side of the one and the upper side of the other."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ CHUNK_OF_PAIRS = 1 << 20  # numbers held at a time in an array
 def clearances(
     upper: np.ndarray, lower: np.ndarray, corners: np.ndarray, starts: np.ndarray, narrow: np.ndarray | float = 0.0
 ) -> np.ndarray:
-    """Least height of polygons `upper` above polygons `lower`, both (n,) numbers of polygons [m], (n,).
+    """Compute the least height of polygons `upper` above polygons `lower`, both (n,) numbers of polygons [m], (n,).
 
     Polygon p is corners[starts[p]:starts[p + 1]], convex, in either sense. Negative where they overlap: how far the
     upper one has to be lifted to rest on the lower one. Infinite where no vertical line wider than `narrow` [m],
@@ -35,7 +35,7 @@ def clearances(
 
 
 def _clearance(above: np.ndarray, below: np.ndarray, narrow: np.ndarray) -> np.ndarray:
-    """Of n pairs of polygons with p and q corners, (n, p, 2) and (n, q, 2)."""
+    """Compute the vertical clearance [m] of n pairs of polygons with p and q corners, (n, p, 2) and (n, q, 2)."""
     left = np.maximum(above[..., 0].min(axis=1), below[..., 0].min(axis=1))
     right = np.minimum(above[..., 0].max(axis=1), below[..., 0].max(axis=1))
     common = right - left > narrow

@@ -23,7 +23,7 @@ FARTHEST = 10.0  # tolerances: a corner that would go farther stays
 
 
 class Snapped(NamedTuple):
-    """Corners of all blocks on common planes, and what was done."""
+    """Corners of all blocks after their faces were put onto common planes, with counts of the changes."""
 
     points: list[np.ndarray]  # of each block [m], (n, d)
     moved: int  # corners that moved
@@ -33,7 +33,7 @@ class Snapped(NamedTuple):
 
 
 class _AllFaces(NamedTuple):
-    """All faces of all blocks one after the other."""
+    """Faces of all blocks in one set of arrays, one block after the other."""
 
     owners: np.ndarray  # block of each, (n,)
     first: np.ndarray  # number of the first face of each block, (n_blocks,)
@@ -46,7 +46,7 @@ class _AllFaces(NamedTuple):
 
 
 def on_common_planes(blocks: Sequence[Facets], pairs: np.ndarray, tolerance: float) -> Snapped:
-    """Corners of blocks whose faces were put onto common planes.
+    """Move the corners of blocks so that faces which nearly lie in one plane lie in it exactly.
 
     pairs: numbers of blocks that come near each other, (n, 2); tolerance: how far apart what is one may lie [m].
     """
@@ -84,7 +84,7 @@ def _faces(blocks: Sequence[Facets]) -> _AllFaces:
 
 
 def _facing(faces: _AllFaces, pairs: np.ndarray, tolerance: float) -> np.ndarray:
-    """Pairs of faces of neighbours that should be in one plane, (n, 2)."""
+    """Find pairs of faces of neighbouring blocks that should lie in one plane, (n, 2)."""
     counts = np.bincount(faces.owners)
     a, b = np.concatenate([pairs, np.arange(len(counts))[:, None].repeat(2, axis=1)]).T  # steps of a concave one too
     repeats = counts[a] * counts[b]
@@ -120,7 +120,7 @@ def _groups(n: int, pairs: np.ndarray) -> np.ndarray:
 def _planes(
     faces: _AllFaces, group: np.ndarray, exact: np.ndarray, tolerance: float
 ) -> tuple[np.ndarray, np.ndarray, int, int]:
-    """Normals and heights of the plane of each face after all, how many were fitted, and how many could not be."""
+    """Compute the final plane of each face (normals, heights), the number of fitted planes and of failed fits."""
     order = np.argsort(group, kind="stable")
     spans = np.linalg.norm(faces.high - faces.low, axis=1)
     normals, heights = faces.normals.copy(), faces.heights.copy()
@@ -144,7 +144,8 @@ def _planes(
 
 
 def fitted_plane(points: np.ndarray, towards: np.ndarray, tolerance: float) -> tuple[np.ndarray, float]:
-    """Unit normal and height of the plane of least squares; along an axis where all stay within a third of `tolerance`.
+    """Fit a plane to points by least squares; along an axis where all stay within a third of `tolerance`. Returns the
+    unit normal and the height.
 
     towards: the side that the normal looks to.
     """
@@ -163,7 +164,9 @@ def fitted_plane(points: np.ndarray, towards: np.ndarray, tolerance: float) -> t
 def _corners(
     block: Facets, normals: np.ndarray, heights: np.ndarray, exact: float, farthest: float
 ) -> tuple[np.ndarray, int]:
-    """Corners of a block where the planes of their faces meet, and how many would have gone too far and stay."""
+    """Intersect the planes of the faces of a block at its corners; corners that would move too far stay and are
+    counted.
+    """
     points, stayed = block.points.copy(), 0
     planes: list[list[int]] = [[] for _ in points]
     for k, own in enumerate(block.corners):

@@ -12,7 +12,7 @@ INNER = 1e-3  # of a part: edges of one block that face each other closer than t
 
 
 def inner_edges(vertices: np.ndarray, topology: Topology, part_blocks: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Edges inside a block of several parts, (n_faces,) bool; sizes: of the parts [m], (n_parts,)."""
+    """Find the edges inside a block of several parts, (n_faces,) bool; sizes: of the parts [m], (n_parts,)."""
     inner = np.zeros(topology.n_faces, bool)
     parts_of_block = np.bincount(part_blocks)
     if not (parts_of_block > 1).any():
@@ -27,7 +27,7 @@ def inner_edges(vertices: np.ndarray, topology: Topology, part_blocks: np.ndarra
 
 
 def _covered(edge: np.ndarray, others: np.ndarray, reach: float) -> bool:
-    """Whether other edges (2 ends, n, 2) that run the other way within `reach` [m] cover an edge (2 ends, 2)."""
+    """Test whether opposite edges (2 ends, n, 2) within `reach` [m] cover an edge (2 ends, 2) completely."""
     along = edge[1] - edge[0]
     length = float(np.hypot(*along))
     along = along / length
@@ -44,7 +44,8 @@ def _covered(edge: np.ndarray, others: np.ndarray, reach: float) -> bool:
 def covered_faces(
     vertices: np.ndarray, topology: Topology, areas: np.ndarray, part_blocks: np.ndarray, sizes: np.ndarray
 ) -> np.ndarray:
-    """Faces in space inside a block of several parts, (n_faces,) bool: other parts lie against all of their area.
+    """Find the faces in space inside a block of several parts, (n_faces,) bool: other parts lie against all of their
+    area.
 
     areas: of the faces times their outward normals [m²], (n_faces, 3); sizes: of the parts [m], (n_parts,).
     """
@@ -71,7 +72,7 @@ def covered_faces(
 
 
 def clipped(polygon: np.ndarray, by: np.ndarray) -> np.ndarray:
-    """What two convex polygons (n, 2), both counter-clockwise, have in common, (m, 2); Sutherland and Hodgman 1974."""
+    """Intersect two convex polygons (n, 2), both counter-clockwise, (m, 2); Sutherland and Hodgman 1974."""
     for start, end in zip(by, np.roll(by, -1, axis=0), strict=True):
         if not len(polygon):
             break

@@ -1,4 +1,4 @@
-"""Convex bodies in any dimension: how far a point is from one, and what two of them have in common."""
+"""Convex bodies in any dimension: distance of a point from one, and intersection of two."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ ROUND_OFF = 1e-12  # of the distance to the furthest corner
 
 
 class CommonBody(NamedTuple):
-    """What two convex bodies have in common."""
+    """Intersection of two convex bodies."""
 
     volume: float  # in the plane the area [m^d]
     centroid: np.ndarray  # [m], (d,)
 
 
 def distance(corners: np.ndarray, point: np.ndarray) -> float:
-    """How far a point is from a convex body with these corners (n, d) [m]; 0 inside.
+    """Compute the distance of a point from the convex body with these corners (n, d) [m]; 0 inside.
 
     In the plane the nearest point lies on a line between two corners. In space it is a mean of the corners with weights
     w >= 0: those of the least |sum w (corner - point)|^2 + (1 - sum w)^2, which points the same way whatever the sum
@@ -43,13 +43,13 @@ def distance(corners: np.ndarray, point: np.ndarray) -> float:
 
 
 def _all_on_one_side(arms: np.ndarray) -> bool:
-    """Whether all corners are seen within less than half a turn, from outside; arms: to them [m], (n, 2)."""
+    """Test whether a point is outside: all corners lie within half a turn around it; arms: to them [m], (n, 2)."""
     angles = np.sort(functions.arctan2(arms[:, 1], arms[:, 0]))
     return float(np.diff(angles, append=angles[0] + 2.0 * math.pi).max()) > math.pi
 
 
 def _to_lines(arms: np.ndarray) -> float:
-    """Least distance from the lines between all corners [m]; arms: to them, (n, 2)."""
+    """Compute the least distance from the lines between all corners [m]; arms: to them, (n, 2)."""
     i, j = np.triu_indices(len(arms), 1)
     along = arms[j] - arms[i]
     squares = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
@@ -58,7 +58,7 @@ def _to_lines(arms: np.ndarray) -> float:
 
 
 def common(normals: np.ndarray, offsets: np.ndarray) -> CommonBody | None:
-    """The body within half-spaces normal · x <= offset: unit normals (n, d), offsets [m] (n,); None: there is none.
+    """Intersect half-spaces normal · x <= offset: unit normals (n, d), offsets [m] (n,); None where it is empty.
 
     Its corners are those of the dual hull about a point inside, which a linear program finds.
     """

@@ -1,4 +1,6 @@
-"""Crowds: convex parts that lie in the same place by the hundred, found without comparing each with each."""
+"""Detection of crowded parts: convex parts that lie in the same place by the hundred, found without comparing all
+pairs.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,7 @@ LOOKED_AT = 10 * MOST_TOGETHER  # parts of the fullest cell that are compared
 
 
 def crowd(corners: np.ndarray, starts: np.ndarray) -> np.ndarray | None:
-    """Parts whose boxes all reach into that of the first of them, more than MOST_TOGETHER; None: there are none.
+    """Find more than MOST_TOGETHER parts whose bounding boxes all overlap that of the first; None where there are none.
 
     corners: of all parts in place [m], (n_vertices, d); part p has starts[p]:starts[p + 1].
     """

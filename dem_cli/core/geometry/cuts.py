@@ -1,4 +1,4 @@
-"""Cuts of convex polygons by lines: what lies to either side, what two have in common along their edges, unions.
+"""Cuts of convex polygons by lines: pieces on either side, common edges and unions.
 
 Polygons are arrays of corners (n, 2) [m], counter-clockwise; nothing is an array (0, 2).
 """
@@ -17,7 +17,7 @@ SAME_AREA = 1e-12  # relative: a hull of two polygons that is as large as both i
 
 
 def halves(shape: np.ndarray, start: np.ndarray, end: np.ndarray, gap: float) -> tuple[np.ndarray, np.ndarray]:
-    """What of a convex polygon lies to the left of the line start -> end, and what to its right.
+    """Cut a convex polygon by the line start -> end into its left and its right piece.
 
     Corners within `gap` [m] of the line lie on it: no piece is narrower.
     """
@@ -40,7 +40,9 @@ def halves(shape: np.ndarray, start: np.ndarray, end: np.ndarray, gap: float) ->
 
 
 def less_box(shape: np.ndarray, box: Sequence[float], gap: float) -> list[np.ndarray]:
-    """A convex polygon without a box [left, bottom, right, top]: left and right of it, below and above it."""
+    """Subtract a box [left, bottom, right, top] from a convex polygon: pieces left and right of it, below and above
+    it.
+    """
     x0, y0, x1, y1 = box
     corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
     pieces, rest = [], shape
@@ -51,7 +53,7 @@ def less_box(shape: np.ndarray, box: Sequence[float], gap: float) -> list[np.nda
 
 
 def less_convex(shape: np.ndarray, hole: np.ndarray, gap: float) -> list[np.ndarray]:
-    """A convex polygon without another one, divided by the lines from its middle through its corners."""
+    """Subtract a convex polygon from another, divided by the lines from the middle of the hole through its corners."""
     rest, ends = shape, np.roll(hole, -1, axis=0)
     for start, end in zip(hole, ends, strict=True):
         rest = halves(rest, start, end, gap)[0]
@@ -65,7 +67,7 @@ def less_convex(shape: np.ndarray, hole: np.ndarray, gap: float) -> list[np.ndar
 
 
 def common_edge(a: np.ndarray, b: np.ndarray, gap: float) -> float:
-    """Length along which two convex polygons that do not overlap touch [m]."""
+    """Compute the length along which two convex polygons that do not overlap touch [m]."""
     if (a.max(axis=0) < b.min(axis=0) - gap).any() or (b.max(axis=0) < a.min(axis=0) - gap).any():
         return 0.0
     along = np.roll(a, -1, axis=0) - a
@@ -80,7 +82,7 @@ def common_edge(a: np.ndarray, b: np.ndarray, gap: float) -> float:
 
 
 def union(a: np.ndarray, b: np.ndarray) -> np.ndarray | None:
-    """The union of two convex polygons that touch, where that is convex; else None."""
+    """Unite two convex polygons that touch, where the union is convex; else None."""
     points = np.unique(np.concatenate([a, b]), axis=0)
     points = points[np.lexsort((points[:, 0], points[:, 1]))]
     hull = points[polygon.outline(points, polygon.ROUND_OFF * polygon.size(points))]
@@ -89,7 +91,7 @@ def union(a: np.ndarray, b: np.ndarray) -> np.ndarray | None:
 
 
 def unions(parts: Sequence[np.ndarray], gap: float) -> list[np.ndarray]:
-    """Convex polygons that touch, joined as long as two of them are convex together."""
+    """Join convex polygons that touch, as long as two of them are convex together."""
     left = list(parts)
     k = 0
     while k < len(left):
@@ -105,7 +107,7 @@ def unions(parts: Sequence[np.ndarray], gap: float) -> list[np.ndarray]:
 
 
 def connected(parts: Sequence[np.ndarray], gap: float) -> list[list[int]]:
-    """Numbers of convex polygons that touch along edges, by group, each in order."""
+    """Group the numbers of convex polygons that touch along edges, each group in order."""
     groups: list[list[int]] = []
     for i, part in enumerate(parts):
         touching = [group for group in groups if any(common_edge(parts[j], part, gap) > gap for j in group)]
@@ -116,7 +118,7 @@ def connected(parts: Sequence[np.ndarray], gap: float) -> list[list[int]]:
 
 
 def welded(shapes: Sequence[np.ndarray], gap: float) -> list[np.ndarray]:
-    """The same polygons with coordinates that differ by no more than `gap` [m], round-off of cuts, made the same."""
+    """Make coordinates of polygons equal where they differ by no more than `gap` [m], the round-off of cuts."""
     if not shapes:
         return []
     points = np.concatenate(shapes)

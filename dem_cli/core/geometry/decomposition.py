@@ -11,7 +11,7 @@ ROUND_OFF = 1e-12  # relative to the size of the polygon: corners on a line; bel
 
 
 def convex_parts(corners: np.ndarray) -> list[np.ndarray]:
-    """Numbers of the corners of each convex part of a simple polygon (n, 2) [m], counter-clockwise.
+    """Divide a simple polygon (n, 2) [m], counter-clockwise, into convex parts; returns the numbers of their corners.
 
     Each cut goes from a corner that points inwards to that other corner which leaves the fewest of them, and then the
     widest narrower part. Corners on straight sides may end a cut. Raises ValueError: the sides cross each other.
@@ -20,7 +20,7 @@ def convex_parts(corners: np.ndarray) -> list[np.ndarray]:
 
 
 def is_simple(corners: np.ndarray) -> bool:
-    """Whether a polygon runs counter-clockwise about an area, and no two of its sides meet but at their common end."""
+    """Test whether a polygon runs counter-clockwise and no two of its sides meet except at their common end."""
     size = polygon.size(corners)
     if len(corners) < 3 or polygon.signed_area(corners) <= ROUND_OFF * size**2:
         return False
@@ -56,7 +56,7 @@ def _width(corners: np.ndarray) -> float:
 
 
 def _inwards(corners: np.ndarray, size: float) -> np.ndarray:
-    """Corners at which the polygon is concave, (n,) bool."""
+    """Find the corners at which a polygon is concave, (n,) bool."""
     edges = np.roll(corners, -1, axis=0) - corners
     return cross(np.roll(edges, 1, axis=0), edges) < -ROUND_OFF * size**2
 
@@ -67,7 +67,7 @@ def _halves(n: int, i: int, j: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _seen_from(corners: np.ndarray, r: int, size: float) -> list[int]:
-    """Corners to which a straight cut from corner r lies inside the polygon."""
+    """Find the corners to which a straight cut from corner r lies inside the polygon."""
     n, least = len(corners), ROUND_OFF * size**2
     after = np.roll(corners, -1, axis=0)
     others = np.array([v for v in range(n) if v not in ((r - 1) % n, r, (r + 1) % n)], np.int64)
@@ -84,7 +84,7 @@ def _seen_from(corners: np.ndarray, r: int, size: float) -> list[int]:
 
 
 def _opens_to(corners: np.ndarray, k: int, arm: np.ndarray, least: float) -> bool:
-    """Whether a direction from corner k points into the polygon."""
+    """Test whether a direction from corner k points into the polygon."""
     here, n = corners[k], len(corners)
     out, back = corners[(k + 1) % n] - here, corners[(k - 1) % n] - here
     left_of_out, right_of_back = float(cross(out, arm)) > least, float(cross(arm, back)) > least
@@ -94,7 +94,7 @@ def _opens_to(corners: np.ndarray, k: int, arm: np.ndarray, least: float) -> boo
 
 
 def _meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, least: float) -> np.ndarray:
-    """Whether segments a-b and c-d (n, 2) have a point in common, (n,) bool; twice the area `least` counts as none."""
+    """Test whether segments a-b and c-d (n, 2) intersect, (n,) bool; twice the area `least` counts as zero."""
     sides = [cross(b - a, c - a), cross(b - a, d - a), cross(d - c, a - c), cross(d - c, b - c)]
     sides = [np.where(np.abs(side) <= least, 0.0, np.sign(side)) for side in sides]
     crossing = (sides[0] * sides[1] <= 0.0) & (sides[2] * sides[3] <= 0.0)

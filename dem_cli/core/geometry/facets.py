@@ -1,4 +1,4 @@
-"""Facets: the flat sides of polyhedral surfaces and outlines, triangles of one plane taken together; any dimension."""
+"""Flat sides (facets) of polyhedral surfaces and outlines: triangles of one plane taken together; any dimension."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from dem_cli.core.geometry.polyhedron import newell
 
 
 class Facets(NamedTuple):
-    """Flat sides of one solid, or of one polygon in the plane."""
+    """Flat sides of one solid, or edges of one polygon in the plane."""
 
     points: np.ndarray  # corners [m], (n, d)
     loops: Sequence[np.ndarray]  # of each piece of the surface its corners, outwards; in the plane both ends of an edge
@@ -22,24 +22,24 @@ class Facets(NamedTuple):
 
     @property
     def corners(self) -> list[np.ndarray]:
-        """Of each side the numbers of its corners, each once."""
+        """Numbers of the corners of each flat side, each corner once."""
         flat, owners = np.concatenate(self.loops), np.repeat(self.sides, [len(loop) for loop in self.loops])
         pairs = np.unique(np.column_stack([owners, flat]), axis=0)
         ends = np.cumsum(np.bincount(pairs[:, 0], minlength=len(self.normals)))[:-1]
         return np.split(pairs[:, 1], ends)
 
     def over(self) -> np.ndarray:
-        """How far each corner lies in front of each side [m], (n, k)."""
+        """Compute the height of each corner in front of the plane of each side [m], (n, k)."""
         return product(self.points, self.normals.T) - self.heights
 
     def triangles(self) -> tuple[np.ndarray, np.ndarray]:
-        """The surface of a solid in triangles, fans of its pieces, and the side of each."""
+        """Triangulate the surface of a solid by fans of its pieces; returns triangles and the side of each."""
         fans = [((loop[0], a, b), k) for loop, k in zip(self.loops, self.sides) for a, b in zip(loop[1:-1], loop[2:])]
         return np.array([fan for fan, _ in fans]), np.array([k for _, k in fans])
 
 
 def facets_of_outline(points: np.ndarray) -> Facets:
-    """The edges of a polygon (n, 2), counter-clockwise."""
+    """Make facets of the edges of a polygon (n, 2), counter-clockwise."""
     n = len(points)
     loops = np.column_stack([np.arange(n), (np.arange(n) + 1) % n])
     along = points[loops[:, 1]] - points[loops[:, 0]]
@@ -48,7 +48,7 @@ def facets_of_outline(points: np.ndarray) -> Facets:
 
 
 def facets_of_surface(points: np.ndarray, loops: Sequence[np.ndarray], gap: float) -> Facets:
-    """The flat sides of a closed surface: faces whose corners all lie within `gap` [m] of the plane of a larger one.
+    """Group the faces of a closed surface into flat sides: faces with all corners within `gap` [m] of one plane.
 
     Faces that are not plane to that are cut into triangles first. The largest face says where a plane is.
     """
@@ -75,7 +75,7 @@ def facets_of_surface(points: np.ndarray, loops: Sequence[np.ndarray], gap: floa
 
 
 def _areas(points: np.ndarray, loops: Sequence[np.ndarray]) -> np.ndarray:
-    """Areas of faces times their normals [m²], (n, 3)."""
+    """Compute the areas of faces times their normals [m²], (n, 3)."""
     if any(len(loop) != 3 for loop in loops):
         return np.array([newell(points[loop]) for loop in loops])
     a, b, c = np.moveaxis(points[np.array(loops)], 1, 0)
@@ -83,7 +83,7 @@ def _areas(points: np.ndarray, loops: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def _flat(points: np.ndarray, loop: np.ndarray, gap: float) -> list[np.ndarray]:
-    """A face, or its triangles where it is not plane."""
+    """Return a plane face as it is, or the triangles of a face that is not plane within `gap` [m]."""
     if len(loop) == 3:
         return [loop]
     area = newell(points[loop])

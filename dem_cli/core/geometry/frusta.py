@@ -9,7 +9,7 @@ from dem_cli.core.geometry.polyhedron import Polyhedron, hull, newell, prism_fac
 
 
 def frustum(low: np.ndarray, high: np.ndarray) -> Polyhedron:
-    """The polyhedron between two plane loops of as many corners (n, 3), each joined to the one of the same number.
+    """Build the polyhedron between two plane loops with equally many corners (n, 3), corner k joined to corner k.
 
     The faces between them must be plane. They may run either way round; where corners of both loops coincide, it is
     the wedge or pyramid that is left.
@@ -23,12 +23,15 @@ def frustum(low: np.ndarray, high: np.ndarray) -> Polyhedron:
 
 
 def skewed(face: np.ndarray, shift: np.ndarray) -> Polyhedron:
-    """The prism from a plane face (n, 3) to where a shift [m] takes it; with a shift alike, neighbours stay so."""
+    """Build a skewed prism from a plane face (n, 3) and a shift [m]; neighbours with one shift keep their common
+    face.
+    """
     return frustum(face + shift, face)
 
 
 def regular(radius: float, sides: int, height: float) -> np.ndarray:
-    """Corners of a regular polygon about the z axis, at a height [m], counter-clockwise from above, (sides, 3).
+    """Compute the corners of a regular polygon about the z axis at a height [m], counter-clockwise from above, (sides,
+    3).
 
     The sides are square to the axes where there are four: half a side is turned away from x.
     """

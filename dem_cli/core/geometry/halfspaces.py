@@ -1,4 +1,4 @@
-"""Convex polyhedra cut by planes: both halves, with the same corners, to the last bit, on the cut that they share."""
+"""Cuts of convex polyhedra by planes: both halves have the same corners, to the last bit, on their common cut."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from dem_cli.core.geometry.polyhedron import ROUND_OFF, Polyhedron, size
 
 
 class Halves(NamedTuple):
-    """What lies on both sides of a plane; None: nothing does, or no more than a face."""
+    """Two halves of a polyhedron cut by a plane; None for a side with nothing, or with no more than a face."""
 
     behind: Polyhedron | None  # where the normal points away from
     beyond: Polyhedron | None  # where it points to
 
 
 def halves(solid: Polyhedron, normal: Sequence[float] | np.ndarray, height: float) -> Halves:
-    """A polyhedron cut by the plane {x: normal · x = height} [m]; normal: of length one, (3,).
+    """Cut a polyhedron by the plane {x: normal · x = height} [m]; normal: of length one, (3,).
 
     Corners that lie on the plane but for round-off stay where they are, and belong to both.
     """
@@ -36,7 +36,7 @@ def halves(solid: Polyhedron, normal: Sequence[float] | np.ndarray, height: floa
 
 
 def behind_all(solid: Polyhedron, planes: Sequence[tuple[np.ndarray, float]]) -> Polyhedron | None:
-    """What of a polyhedron lies behind every plane (normal, height); None: nothing."""
+    """Cut a polyhedron down to the part behind every plane (normal, height); None where nothing is left."""
     left: Polyhedron | None = solid
     for normal, height in planes:
         if left is None:
@@ -46,7 +46,9 @@ def behind_all(solid: Polyhedron, planes: Sequence[tuple[np.ndarray, float]]) ->
 
 
 def _with_crossings(solid: Polyhedron, heights: np.ndarray) -> tuple[np.ndarray, dict[tuple[int, int], int]]:
-    """Corners with those on the cut after them, and the number of that on each edge {(i, j): k}, i < j."""
+    """Add the corners on the cut to those of a solid; returns the number of the new corner on each edge {(i, j): k}, i
+    < j.
+    """
     found: dict[tuple[int, int], int] = {}
     places = [solid.vertices]
     for face in solid.faces:
@@ -59,7 +61,7 @@ def _with_crossings(solid: Polyhedron, heights: np.ndarray) -> tuple[np.ndarray,
 
 
 def _with_corners(face: np.ndarray, crossings: dict[tuple[int, int], int]) -> list[int]:
-    """The loop of a face with the corners that the cut adds to it."""
+    """Insert the corners that a cut adds into the loop of a face."""
     loop = []
     for i, j in zip(face.tolist(), np.roll(face, -1).tolist(), strict=True):
         loop.append(i)
@@ -70,7 +72,7 @@ def _with_corners(face: np.ndarray, crossings: dict[tuple[int, int], int]) -> li
 
 
 def _half(vertices: np.ndarray, loops: list[list[int]], heights: np.ndarray) -> Polyhedron:
-    """The part where heights are not positive, closed by a face on the cut."""
+    """Build the part of a polyhedron where heights are not positive, closed by a face on the cut."""
     kept = [[k for k in loop if heights[k] <= 0.0] for loop in loops]
     kept = [loop for loop in kept if len(loop) > 2 and any(heights[k] < 0.0 for k in loop)]
     after: dict[int, int] = {}  # around the cut, against the direction of the faces beside it

@@ -1,4 +1,4 @@
-"""Inertia of blocks that turn: inverse tensors along the axes of the world, spins along principal axes, gyration.
+"""Rotational inertia of blocks: inverse inertia tensors, spins along principal axes, gyroscopic acceleration.
 
 In the plane there is one moment of inertia and nothing of it turns. In space moments are those along the principal
 axes; `axes` lead from these to the axes of the block, `turns` from these to the world: matrices row by row, (n, 9).
@@ -13,17 +13,17 @@ from dem_cli.core.arithmetic.products import product
 
 
 def _inverse(moments: np.ndarray) -> np.ndarray:
-    """1 over moments of inertia, 0 for supports."""
+    """Invert moments of inertia; 0 for supports."""
     return np.divide(1.0, moments, out=np.zeros_like(moments), where=moments > 0.0)
 
 
 def _along(axes: np.ndarray, turns: np.ndarray) -> np.ndarray:
-    """Principal axes in the world, as columns, (n, 3, 3)."""
+    """Compute the principal axes in world coordinates, as columns, (n, 3, 3)."""
     return product(turns.reshape(-1, 3, 3), axes.reshape(-1, 3, 3))
 
 
 def mobilities(moments: np.ndarray, axes: np.ndarray, turns: np.ndarray) -> np.ndarray:
-    """Inverse tensors of inertia along the axes of the world [1/(kg m²)], row by row, (n, r·r)."""
+    """Compute inverse inertia tensors along the world axes [1/(kg m²)], row by row, (n, r·r)."""
     if moments.shape[1] == 1:
         return _inverse(moments)
     along = _along(axes, turns)
@@ -31,14 +31,14 @@ def mobilities(moments: np.ndarray, axes: np.ndarray, turns: np.ndarray) -> np.n
 
 
 def along_principal(spins: np.ndarray, axes: np.ndarray, turns: np.ndarray) -> np.ndarray:
-    """Spins along the axes of the world as components along the principal ones [rad/s], (n, r)."""
+    """Resolve spins along the world axes into components along the principal axes [rad/s], (n, r)."""
     if spins.shape[1] == 1:
         return spins
     return (_along(axes, turns) * spins[:, :, None]).sum(axis=1)
 
 
 def gyration(spins: np.ndarray, moments: np.ndarray, axes: np.ndarray, turns: np.ndarray) -> np.ndarray:
-    """Angular accelerations without any torque, along the axes of the world [rad/s²], (n, r): −J⁻¹ (ω × J ω)."""
+    """Gyroscopic angular accelerations without any torque, along the world axes [rad/s²], (n, r): −J⁻¹ (ω × J ω)."""
     if spins.shape[1] == 1:
         return np.zeros_like(spins)
     own = along_principal(spins, axes, turns)

@@ -1,4 +1,4 @@
-"""Outlines of joints: lines between two places, and plane convex polygons in space; how far points are from them."""
+"""Distances of points from outlines of joints: lines between two places, and plane convex polygons in space."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dem_cli.core.geometry.polygon import following
 def away_from(
     points: np.ndarray, which: np.ndarray, places: np.ndarray, starts: np.ndarray, normals: np.ndarray
 ) -> np.ndarray:
-    """Distance of each point (n, d) from the outline `which` (n,) [m], (n,).
+    """Compute the distance of each point (n, d) from the outline `which` (n,) [m], (n,).
 
     Outline j has the places starts[j]:starts[j + 1]: one or two of them are a line, more the corners of a polygon in
     space, counter-clockwise about its normal. Of points beside a polygon the distance from the line of its furthest
@@ -24,7 +24,7 @@ def away_from(
 
 
 def furthest(places: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Of each outline the two places that are furthest from each other, (n, 2)."""
+    """Find the two places of each outline that are furthest from each other, (n, 2)."""
     counts, found = np.diff(starts), np.empty((len(starts) - 1, 2), np.int64)
     for count in np.unique(counts):
         joints = np.flatnonzero(counts == count)

@@ -14,27 +14,27 @@ from dem_cli.core.geometry.topology import Topology
 
 
 class PartShapes(Protocol):
-    """The contract of a module like geometry/planar_parts.py."""
+    """Interface of the modules that measure convex parts, such as geometry/planar_parts.py."""
 
     def volumes(self, vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> np.ndarray:
-        """Signed volumes, in the plane areas [m^d], (n_parts,)."""
+        """Compute signed volumes of parts, in the plane areas [m^d], (n_parts,)."""
 
     def widths(self, vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> np.ndarray:
-        """About the smallest side [m], (n_parts,)."""
+        """Estimate the smallest width of each part [m], (n_parts,)."""
 
     def are_convex(
         self, vertices: np.ndarray, part_starts: np.ndarray, topology: Topology, sizes: np.ndarray
     ) -> np.ndarray:
-        """Whether each part is convex, (n_parts,) bool; sizes: of the parts [m], (n_parts,)."""
+        """Test whether each part is convex, (n_parts,) bool; sizes: of the parts [m], (n_parts,)."""
 
     def edges(self, topology: Topology) -> tuple[np.ndarray, np.ndarray]:
-        """Both ends of each edge, (n_edges, 2), and its part, (n_edges,)."""
+        """List both ends of each edge, (n_edges, 2), and the part that it belongs to, (n_edges,)."""
 
     def normals(self, vertices: np.ndarray, topology: Topology) -> np.ndarray:
-        """Outward unit normals of the faces, (n_faces, d)."""
+        """Compute outward unit normals of the faces, (n_faces, d)."""
 
     def face_sizes(self, vertices: np.ndarray, topology: Topology) -> np.ndarray:
-        """Areas, in the plane lengths, of the faces [m^(d-1)], (n_faces,)."""
+        """Compute areas, in the plane lengths, of the faces [m^(d-1)], (n_faces,)."""
 
     def inner_faces(
         self, vertices: np.ndarray, topology: Topology, part_blocks: np.ndarray, sizes: np.ndarray

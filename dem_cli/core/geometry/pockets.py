@@ -1,4 +1,4 @@
-"""Pockets of simple polygons: what lies between an outline and its convex hull, and between a hull and its box.
+"""Pockets of simple polygons: empty areas between an outline and its convex hull, and between a hull and its box.
 
 Outlines are arrays of corners (n, 2) [m], counter-clockwise.
 """
@@ -12,13 +12,13 @@ from dem_cli.core.geometry.decomposition import convex_parts
 
 
 def hull(outline: np.ndarray) -> np.ndarray:
-    """The convex hull of an outline, counter-clockwise, (n, 2)."""
+    """Compute the convex hull of an outline, counter-clockwise, (n, 2)."""
     points = outline[np.lexsort((outline[:, 0], outline[:, 1]))]
     return points[polygon.outline(points, polygon.ROUND_OFF * polygon.size(points))]
 
 
 def hull_pockets(outline: np.ndarray) -> list[np.ndarray]:
-    """Convex pieces that fill the convex hull of a simple outline where the outline leaves it empty."""
+    """Fill the area between a simple outline and its convex hull with convex pieces."""
     corners, gap = hull(outline), polygon.ROUND_OFF * polygon.size(outline)
     ends = np.roll(corners, -1, axis=0)
     along = (ends - corners) / np.hypot(*(ends - corners).T)[:, None]
@@ -33,7 +33,7 @@ def hull_pockets(outline: np.ndarray) -> list[np.ndarray]:
 
 
 def box_pockets(corners: np.ndarray) -> list[np.ndarray]:
-    """Convex pieces that fill the box around a convex polygon: those at the corners of the box."""
+    """Fill the area between a convex polygon and its bounding box with convex pieces, at the corners of the box."""
     (x0, y0), (x1, y1) = corners.min(axis=0), corners.max(axis=0)
     sides = [(1, y0), (0, x1), (1, y1), (0, x0)]  # counter-clockwise from below
     box = polygon.rectangle(x0, y0, x1 - x0, y1 - y0)[[1, 2, 3, 0]]
@@ -50,12 +50,12 @@ def box_pockets(corners: np.ndarray) -> list[np.ndarray]:
 
 
 def _begins(corners: np.ndarray, k: int, axis: int) -> bool:
-    """Whether a side of a box begins at corner k: the one before it lies elsewhere."""
+    """Test whether a side of a box begins at corner k: the corner before it lies elsewhere."""
     return bool(corners[k - 1, axis] != corners[k, axis])
 
 
 def convex_pieces(shape: np.ndarray) -> list[np.ndarray]:
-    """Convex pieces of a simple polygon, without corners on straight sides."""
+    """Divide a simple polygon into convex pieces, without corners on straight sides."""
     whole = polygon.simplified(shape)
     if polygon.is_convex(whole):
         return [whole]

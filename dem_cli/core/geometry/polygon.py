@@ -14,7 +14,7 @@ ROUND_OFF = 1e-9  # relative to the size of the polygon: what counts as coincide
 
 
 class AreaProperties(NamedTuple):
-    """Of one polygon, or of many (then each field has one row per polygon)."""
+    """Area, centroid and polar moment of one polygon, or of many (then each field has one row per polygon)."""
 
     area: np.ndarray  # [m2]
     centroid: np.ndarray  # [m], (..., 2)
@@ -22,26 +22,28 @@ class AreaProperties(NamedTuple):
 
 
 def size(vertices: np.ndarray) -> float:
-    """Diagonal of the bounding box [m]."""
+    """Compute the diagonal of the bounding box of a polygon [m]."""
     return float(np.hypot(*np.ptp(np.asarray(vertices, float), axis=0)))
 
 
 def sizes(vertices: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Diagonals of the bounding boxes of m polygons [m], (m,)."""
+    """Compute the diagonals of the bounding boxes of m polygons [m], (m,)."""
     low = np.minimum.reduceat(vertices, starts[:-1], axis=0)
     high = np.maximum.reduceat(vertices, starts[:-1], axis=0)
     return np.hypot(*(high - low).T)
 
 
 def following(starts: np.ndarray) -> np.ndarray:
-    """Of each corner of m polygons, the next one around."""
+    """Find the next corner around for each corner of m polygons."""
     after = np.arange(1, starts[-1] + 1)
     after[starts[1:] - 1] = starts[:-1]
     return after
 
 
 def signed_area(vertices: np.ndarray) -> float:
-    """Area [m2], negative where the corners run clockwise: to the last bit that of `properties`, six times as fast."""
+    """Compute the area of a polygon [m2], negative where the corners run clockwise. Equal to that of `properties` to
+    the last bit, six times as fast.
+    """
     corners = np.asarray(vertices, float)
     arms = corners - corners[0]
     twice = cross(arms, np.concatenate((arms[1:], arms[:1])))
@@ -49,29 +51,29 @@ def signed_area(vertices: np.ndarray) -> float:
 
 
 def area(vertices: np.ndarray) -> float:
-    """Area [m2], positive whatever the sense of the corners."""
+    """Compute the area of a polygon [m2], positive whatever the sense of the corners."""
     return abs(signed_area(vertices))
 
 
 def centroid(vertices: np.ndarray) -> np.ndarray:
-    """Centroid of the enclosed area [m], (2,)."""
+    """Compute the centroid of the area of a polygon [m], (2,)."""
     return properties(vertices).centroid
 
 
 def polar_moment(vertices: np.ndarray) -> float:
-    """Second moment of area about the centroid, Ixx + Iyy [m4]."""
+    """Compute the second moment of area of a polygon about its centroid, Ixx + Iyy [m4]."""
     return abs(float(properties(vertices).polar_moment))
 
 
 def properties(vertices: np.ndarray) -> AreaProperties:
-    """Area, centroid and polar moment of one polygon; signed like the sense of its corners."""
+    """Compute area, centroid and polar moment of one polygon; signed like the sense of its corners."""
     vertices = np.asarray(vertices, float)
     many = properties_of_all(vertices, np.array([0, len(vertices)]))
     return AreaProperties(many.area[0], many.centroid[0], many.polar_moment[0])
 
 
 def properties_of_all(vertices: np.ndarray, starts: np.ndarray) -> AreaProperties:
-    """Properties of m polygons at once; polygon p is vertices[starts[p]:starts[p + 1]], starts (m + 1,).
+    """Compute properties of m polygons at once; polygon p is vertices[starts[p]:starts[p + 1]], starts (m + 1,).
 
     Sums over triangles from the first corner of each, so that a polygon far from the origin loses no digits.
     Areas and moments are negative for clockwise corners; without area the centroid is the first corner.
@@ -91,7 +93,7 @@ def properties_of_all(vertices: np.ndarray, starts: np.ndarray) -> AreaPropertie
 
 
 def compound(parts: AreaProperties, groups: np.ndarray, n_groups: int) -> AreaProperties:
-    """Properties of bodies of several parts; part p (area positive) belongs to body groups[p]."""
+    """Combine the area properties of parts into bodies; part p (area positive) belongs to body groups[p]."""
     total = np.bincount(groups, parts.area, n_groups)
     first = np.zeros((n_groups, 2))
     first[groups[::-1]] = parts.centroid[::-1]  # a point of each body, against loss of digits
@@ -104,13 +106,13 @@ def compound(parts: AreaProperties, groups: np.ndarray, n_groups: int) -> AreaPr
 
 
 def is_convex(vertices: np.ndarray, tolerance: float = ROUND_OFF) -> bool:
-    """True if the corners run counter-clockwise around a convex polygon; collinear corners are allowed."""
+    """Test whether the corners run counter-clockwise around a convex polygon; collinear corners are allowed."""
     vertices = np.asarray(vertices, float)
     return len(vertices) >= 3 and bool(are_convex(vertices, np.array([0, len(vertices)]), tolerance)[0])
 
 
 def are_convex(vertices: np.ndarray, starts: np.ndarray, tolerance: float = ROUND_OFF) -> np.ndarray:
-    """`is_convex` of m polygons at once, (m,); polygon p is vertices[starts[p]:starts[p + 1]]."""
+    """Test whether each of m polygons is convex, (m,); polygon p is vertices[starts[p]:starts[p + 1]]."""
     after_each = following(starts)
     edges = vertices[after_each] - vertices
     after = edges[after_each]
@@ -124,7 +126,7 @@ def are_convex(vertices: np.ndarray, starts: np.ndarray, tolerance: float = ROUN
 
 
 def in_order(points: Sequence | np.ndarray, tolerance: float = ROUND_OFF) -> np.ndarray:
-    """Corners of a convex polygon, from any order to counter-clockwise from the lowest (then leftmost) one.
+    """Sort the corners of a convex polygon counter-clockwise from the lowest (then leftmost) one.
 
     Points on an edge between two corners do not change the shape and are left out.
     Raises ValueError: fewer than three points, the same point twice, no area, or a point inside the hull.
@@ -159,14 +161,15 @@ def _reject_duplicates(points: np.ndarray, gap: float) -> None:
 
 
 def _hull(ordered: np.ndarray, gap: float) -> np.ndarray:
-    """Strict convex hull of points sorted by y then x; counter-clockwise."""
+    """Compute the strict convex hull of points sorted by y then x; counter-clockwise."""
     return ordered[outline(ordered, gap)]
 
 
 def outline(ordered: np.ndarray, gap: float) -> list[int]:
-    """Numbers of the corners of the strict convex hull by the monotone chain, of points (n, 2) sorted by y then x.
+    """Find the corners of the strict convex hull of points (n, 2) sorted by y then x, by the monotone chain; returns
+    their numbers.
 
-    Counter-clockwise; points within `gap` [m] of the line between their neighbours are none.
+    Counter-clockwise; points within `gap` [m] of the line between their neighbours are no corners.
     """
 
     def chain(numbers: range) -> list[int]:
@@ -199,7 +202,7 @@ def _text(point: np.ndarray) -> str:
 
 
 def simplified(vertices: np.ndarray, tolerance: float = ROUND_OFF) -> np.ndarray:
-    """The same polygon without repeated corners and corners on a straight edge, (m, 2); order kept."""
+    """Remove repeated corners and corners on straight edges from a polygon, (m, 2); order kept."""
     vertices = np.asarray(vertices, float)
     gap = tolerance * size(vertices)
     kept = vertices[np.hypot(*(vertices - np.roll(vertices, 1, axis=0)).T) > gap]
@@ -212,19 +215,19 @@ def simplified(vertices: np.ndarray, tolerance: float = ROUND_OFF) -> np.ndarray
 
 
 def rectangle(x: float, y: float, width: float, height: float) -> np.ndarray:
-    """Corners of a rectangle from its lower left corner, (4, 2)."""
+    """Build the corners of a rectangle from its lower left corner, (4, 2)."""
     return np.array([[x, y], [x + width, y], [x + width, y + height], [x, y + height]])
 
 
 def upright_box(vertices: np.ndarray) -> tuple[float, float, float, float] | None:
-    """Left, bottom, right and top of a polygon that is a level rectangle, exactly [m]; None: it is not."""
+    """Return left, bottom, right and top of a polygon that is exactly a level rectangle [m]; None where it is not."""
     (x0, y0), (x1, y1) = vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()
     at_sides = np.isin(vertices[:, 0], [x0, x1]) & np.isin(vertices[:, 1], [y0, y1])
     return (x0, y0, x1, y1) if len(vertices) == 4 and at_sides.all() else None
 
 
 def moved(vertices: np.ndarray, angle: float, shift: Sequence[float]) -> np.ndarray:
-    """Turned about the origin by angle [rad], then shifted [m]; an angle of 0 is exact."""
+    """Turn a polygon about the origin by angle [rad], then shift it [m]; an angle of 0 is exact."""
     vertices = np.asarray(vertices, float)
     if angle:
         vertices = turned_as_one(vertices, angle)

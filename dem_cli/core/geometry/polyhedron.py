@@ -17,19 +17,19 @@ COPLANAR = 1e-6  # relative to the same: points that close to a plane lie on it;
 
 
 class Polyhedron(NamedTuple):
-    """One convex polyhedron."""
+    """Convex polyhedron: its corners and its faces."""
 
     vertices: np.ndarray  # corners [m], (n, 3)
     faces: tuple[np.ndarray, ...]  # of each face the numbers of its corners, counter-clockwise seen from outside
 
 
 def size(vertices: np.ndarray) -> float:
-    """Diagonal of the bounding box [m]."""
+    """Compute the diagonal of the bounding box of a polyhedron [m]."""
     return float(norm(np.ptp(np.asarray(vertices, float), axis=0)))
 
 
 def hull(points: Sequence | np.ndarray) -> Polyhedron:
-    """The convex polyhedron whose corners are these points (n, 3), in any order.
+    """Build the convex polyhedron whose corners are these points (n, 3), in any order.
 
     Points on a face or an edge of the others do not change the shape and are left out.
     Raises ValueError: fewer than four points, the same point twice, no volume, or a point inside the hull.
@@ -55,7 +55,7 @@ def hull(points: Sequence | np.ndarray) -> Polyhedron:
 
 
 def from_faces(points: Sequence | np.ndarray, loops: Sequence[Sequence[int]]) -> Polyhedron:
-    """The convex polyhedron with given corners (n, 3) and faces, each the numbers of its corners (from 0) around it.
+    """Build the convex polyhedron with given corners (n, 3) and faces: loops of numbers of corners, from 0.
 
     Faces may run either way round; those that lie in one plane become one. Raises ValueError, with the face or corner:
     fewer than four of them, numbers that are no corner, not plane, not convex, not closed, no volume.
@@ -82,12 +82,12 @@ def from_faces(points: Sequence | np.ndarray, loops: Sequence[Sequence[int]]) ->
 
 
 def prism(corners: np.ndarray, low: float, high: float) -> Polyhedron:
-    """A convex polygon (n, 2) in x and z, from y = low to high [m]."""
+    """Extrude a convex polygon (n, 2) in x and z from y = low to high [m]."""
     return prisms([corners], low, high)[0]
 
 
 def prisms(polygons: Sequence[np.ndarray], low: np.ndarray | float, high: np.ndarray | float) -> list[Polyhedron]:
-    """Convex polygons (n, 2) in x and z, each from its y = low to high [m], or all from the same.
+    """Extrude convex polygons (n, 2) in x and z, each from its y = low to high [m], or all from the same.
 
     Face k goes along edge k of the polygon; then come the one at y = low and that at y = high. Polygons that run
     clockwise are turned round.
@@ -111,13 +111,13 @@ def prisms(polygons: Sequence[np.ndarray], low: np.ndarray | float, high: np.nda
 
 
 def box(low: Sequence[float], high: Sequence[float]) -> Polyhedron:
-    """A box with edges along the axes, between two opposite corners [m], (3,)."""
+    """Build a box with edges along the axes, between two opposite corners [m], (3,)."""
     (x0, y0, z0), (x1, y1, z1) = low, high
     return prism(np.array([[x0, z0], [x1, z0], [x1, z1], [x0, z1]], float), y0, y1)
 
 
 def moved(vertices: np.ndarray, angle: float, shift: Sequence[float]) -> np.ndarray:
-    """Corners (n, 3) turned about the z axis by angle [rad], then shifted [m]; an angle of 0 is exact."""
+    """Turn corners (n, 3) about the z axis by angle [rad], then shift them [m]; an angle of 0 is exact."""
     vertices = np.asarray(vertices, float)
     if angle:
         vertices = np.column_stack([turned_as_one(vertices[:, :2], angle), vertices[:, 2]])
@@ -125,7 +125,7 @@ def moved(vertices: np.ndarray, angle: float, shift: Sequence[float]) -> np.ndar
 
 
 def all_moved(solids: Sequence[Polyhedron], angle: float, shift: Sequence[float]) -> list[Polyhedron]:
-    """Many polyhedra `moved` at once."""
+    """Turn and shift many polyhedra at once, as `moved` does one."""
     if not solids:
         return []
     corners = moved(np.concatenate([solid.vertices for solid in solids]), angle, shift)
@@ -135,14 +135,14 @@ def all_moved(solids: Sequence[Polyhedron], angle: float, shift: Sequence[float]
 
 
 def newell(loop: np.ndarray) -> np.ndarray:
-    """Area of a face times its normal, from its corners (n, 3): exact where they are plane, else the mean one [m²]."""
+    """Area times normal of a face from its corners (n, 3) [m²]: exact where it is plane, else the mean normal."""
     arms = loop - loop[0]
     return 0.5 * np.cross(arms, np.roll(arms, -1, axis=0)).sum(axis=0)
 
 
 @cache
 def prism_faces(n: int) -> tuple[np.ndarray, ...]:
-    """Faces between two loops of n corners, the second after the first, that run round as a prism has them.
+    """List the faces of a prism between two loops of n corners, the second loop after the first.
 
     The n around, then the first loop, seen from outside counter-clockwise, and the second one.
     """
@@ -166,7 +166,7 @@ def _checked(points: Sequence | np.ndarray) -> np.ndarray:
 
 
 def _planes(points: np.ndarray, gap: float) -> tuple[np.ndarray, np.ndarray]:
-    """Outward normals (m, 3) and heights over the origin (m,) of the faces of a hull; facets in one plane are one.
+    """Compute outward normals (m, 3) and heights over the origin (m,) of the faces of a hull, one for each plane.
 
     The largest facet of each plane says where it is: Qhull leaves slivers of no area, whose planes are arbitrary.
     """
@@ -196,7 +196,7 @@ def _planes(points: np.ndarray, gap: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _outline(points: np.ndarray, on: np.ndarray, normal: np.ndarray, gap: float) -> np.ndarray:
-    """Numbers of the corners of a face around its outward normal, of those points that lie on its plane."""
+    """Sort the points on the plane of a face around its outward normal; returns the numbers of its corners."""
     first = beside(normal[None])[0]
     flat = product(points[on], np.column_stack([first, np.cross(normal, first)]))
     order = np.lexsort((flat[:, 0], flat[:, 1]))
@@ -204,13 +204,13 @@ def _outline(points: np.ndarray, on: np.ndarray, normal: np.ndarray, gap: float)
 
 
 def _numbered(points: np.ndarray, loops: Sequence[np.ndarray]) -> Polyhedron:
-    """With the corners alone that belong to a face, in the order in which they were given."""
+    """Build a polyhedron from only the corners that belong to a face, in the order in which they were given."""
     used = np.unique(np.concatenate(loops))
     return Polyhedron(points[used], tuple(np.searchsorted(used, loop) for loop in loops))
 
 
 def _loop_checked(points: np.ndarray, loop: Sequence[int], number: int) -> np.ndarray:
-    """A face that has corners, each once. Raises ValueError."""
+    """Check that a face has at least three corners, each once. Raises ValueError."""
     corners = np.asarray(loop)
     if corners.ndim != 1 or len(corners) < 3 or corners.dtype.kind not in "iu":
         raise ValueError(f"face {number} needs at least 3 numbers of corners")
@@ -223,7 +223,7 @@ def _loop_checked(points: np.ndarray, loop: Sequence[int], number: int) -> np.nd
 
 
 def _outwards(points: np.ndarray, loop: np.ndarray, number: int) -> np.ndarray:
-    """A face, counter-clockwise seen from outside. Raises ValueError: not plane, not convex."""
+    """Orient a face counter-clockwise seen from outside. Raises ValueError: not plane, not convex."""
     gap = COPLANAR * size(points)
     area = newell(points[loop])
     length = float(norm(area))
@@ -254,7 +254,7 @@ def _outwards(points: np.ndarray, loop: np.ndarray, number: int) -> np.ndarray:
 
 
 def _open_edge(loops: Sequence[np.ndarray]) -> tuple[int, int] | None:
-    """An edge (two corners) that is not in two faces, once each way; None: the faces close."""
+    """Find an edge (two corners) that is not in two faces, once each way; None where the faces close."""
     starts, ends = np.concatenate(loops), np.concatenate([np.roll(loop, -1) for loop in loops])
     n = int(starts.max()) + 1
     there, back = np.sort(starts * n + ends), np.sort(ends * n + starts)
@@ -265,7 +265,7 @@ def _open_edge(loops: Sequence[np.ndarray]) -> tuple[int, int] | None:
 
 
 def _has_edge(loop: np.ndarray, i: int, j: int) -> bool:
-    """Whether a face goes from corner i to j or back."""
+    """Test whether a face has the edge between corners i and j, in either direction."""
     after = np.roll(loop, -1)
     return bool((((loop == i) & (after == j)) | ((loop == j) & (after == i))).any())
 

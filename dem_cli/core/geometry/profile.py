@@ -1,4 +1,4 @@
-"""The profile of a joint that is not plane: a convex polygon on a flat surface (thesis 7.3.1).
+"""Convex profile of a joint that is not plane: a polygon on a flat surface (thesis 7.3.1).
 
 Along the joint x [m], from 0 to its length; across it z [m], the height of the polygon over the flat surface.
 All rises are tiny beside the length, so that the circle around the polygon is the parabola z = x²/2R.
@@ -36,7 +36,7 @@ def polygon(lengths: Sequence[float] | np.ndarray, aperture: float) -> tuple[np.
 
 
 def cut(places: np.ndarray, rises: np.ndarray, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
-    """The part of a chain from place `low` to `high` [m]: the vertices between them and two new ends, (m + 1,) each.
+    """Cut a chain from place `low` to `high` [m]: the vertices between them and two new ends, (m + 1,) each.
 
     Its first and last sides go on where the part is longer than the chain.
     """
@@ -50,17 +50,19 @@ def cut(places: np.ndarray, rises: np.ndarray, low: float, high: float) -> tuple
 
 
 def slopes(places: np.ndarray, rises: np.ndarray) -> np.ndarray:
-    """Slope of each side against the one the joint rests on [-], (n,); it grows from left to right."""
+    """Slope of each side of a profile against the one the joint rests on [-], (n,); it grows from left to right."""
     return np.diff(rises) / np.diff(places)
 
 
 def angles(places: np.ndarray, rises: np.ndarray) -> np.ndarray:
-    """Angle between each side and the next [rad], (n − 1,): the rotation from one contact to the next; small angles."""
+    """Compute the angle between each side of a profile and the next [rad], (n − 1,): the rotation from one contact to
+    the next; small angles.
+    """
     return np.diff(slopes(places, rises))
 
 
 def regular(sides: int, central: float | None = None) -> np.ndarray:
-    """Lengths of the sides as shares of the joint, (n,): equal, or the middle one `central` and the others equal.
+    """Compute the lengths of the sides of a profile as shares of the joint, (n,): equal, or the middle one `central`.
 
     Raises ValueError: a central side of an even number of sides.
     """

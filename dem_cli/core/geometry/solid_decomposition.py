@@ -16,14 +16,14 @@ from dem_cli.core.arithmetic.products import norm, product
 from dem_cli.core.arithmetic.small_matrices import determinants
 from dem_cli.core.geometry.polyhedron import newell
 
-ROUND_OFF = 1e-9  # of the size: points that are one, heights that are none
+ROUND_OFF = 1e-9  # of the size: points that coincide, heights that are zero
 THIN = 1e-6  # of the size: pieces of a side that are narrower are not cut along
 SAME_VOLUME = 1e-9  # relative: two pieces whose hull is no larger are convex together
 MOST_PIECES = 200
 
 
 class Sides(NamedTuple):
-    """The surface of a solid: flat sides, each of one or several triangles."""
+    """Surface of a solid: flat sides, each of one or several triangles."""
 
     points: np.ndarray  # corners [m], (n, 3)
     triangles: np.ndarray  # counter-clockwise seen from outside; in a fan of a concave face some are not, (m, 3)
@@ -33,7 +33,9 @@ class Sides(NamedTuple):
 
 
 def convex_pieces(sides: Sides) -> list[np.ndarray]:
-    """Corners (n, 3) of convex pieces that fill a solid. Raises ValueError: too many, or they do not fill it."""
+    """Divide a solid into convex pieces, each given by its corners (n, 3). Raises ValueError where there are too many,
+    or they do not fill it.
+    """
     size = float(norm(np.ptp(sides.points, axis=0)))
     rough = roughness(sides)
     gap = max(ROUND_OFF * size, 2.0 * rough)
@@ -64,20 +66,20 @@ def convex_pieces(sides: Sides) -> list[np.ndarray]:
 
 
 def roughness(sides: Sides) -> float:
-    """How far corners lie off the planes of the sides that they belong to [m]: nothing where a file is exact."""
+    """Compute the largest distance of corners from the planes of their sides [m]: 0 where a file is exact."""
     own = np.repeat(sides.planes, 3)
     places = sides.points[sides.triangles.ravel()]
     return float(np.abs((places * sides.normals[own]).sum(axis=1) - sides.heights[own]).max())
 
 
 def solid_volume(sides: Sides) -> float:
-    """Volume of a solid by the triangles of its surface [m3]."""
+    """Compute the volume of a solid from the triangles of its surface [m3]."""
     arms = sides.points[sides.triangles] - sides.points.mean(axis=0)
     return abs(float(determinants(arms).sum())) / 6.0
 
 
 def volume(corners: np.ndarray) -> float:
-    """Volume of the hull of corners (n, 3) [m3]; of corners in one plane 0."""
+    """Compute the volume of the convex hull of corners (n, 3) [m3]; 0 for corners in one plane."""
     from scipy.spatial import ConvexHull, QhullError
 
     try:
@@ -87,7 +89,7 @@ def volume(corners: np.ndarray) -> float:
 
 
 def hull_corners(points: np.ndarray) -> np.ndarray:
-    """The corners of the hull of points (n, 3), those left out that lie on its faces or edges; in their order."""
+    """Find the corners of the convex hull of points (n, 3), without those on its faces or edges; in their order."""
     from scipy.spatial import ConvexHull, QhullError
 
     try:
@@ -98,7 +100,7 @@ def hull_corners(points: np.ndarray) -> np.ndarray:
 
 
 def _best(sides: Sides, faces: list[tuple[int, np.ndarray]], gap: float) -> int | None:
-    """The side whose plane cuts the fewest others that go through the same piece; None: none goes through it."""
+    """Choose the side whose plane cuts the fewest others through the same piece; None where no plane does."""
     chosen, least = None, np.inf
     for k in dict.fromkeys(k for k, _ in faces):
         cuts = 0
@@ -111,7 +113,7 @@ def _best(sides: Sides, faces: list[tuple[int, np.ndarray]], gap: float) -> int 
 
 
 def _half(cell: np.ndarray, normal: np.ndarray, height: float, known: np.ndarray, gap: float) -> np.ndarray | None:
-    """Corners of the part of a convex piece below a plane; None: there is nothing of it."""
+    """Compute the corners of the part of a convex piece below a plane; None where nothing is left."""
     over = product(cell, normal) - height
     if over.min() >= -gap:
         return None
@@ -128,7 +130,7 @@ def _half(cell: np.ndarray, normal: np.ndarray, height: float, known: np.ndarray
 
 
 def _apart(points: np.ndarray, gap: float) -> np.ndarray:
-    """Points without those that are another one again."""
+    """Remove repeated points."""
     kept: list[np.ndarray] = []
     for point in points:
         if not kept or np.abs(np.array(kept) - point).max(axis=1).min() > gap:
@@ -137,7 +139,7 @@ def _apart(points: np.ndarray, gap: float) -> np.ndarray:
 
 
 def _clipped(piece: np.ndarray, normal: np.ndarray, height: float, gap: float) -> np.ndarray:
-    """The part of a flat convex side (corners in order, (n, 3)) below a plane; Sutherland and Hodgman 1974."""
+    """Cut a flat convex side (corners in order, (n, 3)) to the part below a plane; Sutherland and Hodgman 1974."""
     if not len(piece):
         return piece
     over = product(piece, normal) - height
@@ -153,12 +155,12 @@ def _clipped(piece: np.ndarray, normal: np.ndarray, height: float, gap: float) -
 
 
 def _width(piece: np.ndarray) -> float:
-    """How wide a flat side is: the square root of its area [m]."""
+    """Estimate the width of a flat side: the square root of its area [m]."""
     return float(np.sqrt(norm(newell(piece)))) if len(piece) > 2 else 0.0
 
 
 def _winding(sides: Sides, point: np.ndarray) -> float:
-    """How often the surface winds about a point: 1 inside, 0 outside; by Van Oosterom and Strackee 1983."""
+    """Compute the winding number of the surface about a point: 1 inside, 0 outside; Van Oosterom and Strackee 1983."""
     arms = sides.points[sides.triangles] - point
     lengths = np.linalg.norm(arms, axis=2)
     a, b, c = arms[:, 0], arms[:, 1], arms[:, 2]
@@ -168,7 +170,7 @@ def _winding(sides: Sides, point: np.ndarray) -> float:
 
 
 def _joined(pieces: list[np.ndarray], rough: float) -> list[np.ndarray]:
-    """Pieces with those joined, two at a time, that are convex together; the largest first."""
+    """Join pieces, two at a time, that are convex together; the largest first."""
     left = sorted(pieces, key=volume, reverse=True)
     sizes = [volume(piece) for piece in left]
     k = 0

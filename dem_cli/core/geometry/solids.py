@@ -16,7 +16,7 @@ DIAGONAL = 1e-13  # of the trace: products of inertia that are round-off
 
 
 class VolumeProperties(NamedTuple):
-    """Of n polyhedra or bodies."""
+    """Volume, centroid and second moments of n polyhedra or bodies."""
 
     volume: np.ndarray  # [m3], (n,)
     centroid: np.ndarray  # [m], (n, 3)
@@ -31,7 +31,7 @@ class Triangles(NamedTuple):
 
 
 def triangles_of(topology: Topology) -> Triangles:
-    """All triangles of all faces."""
+    """Cut all faces of a topology into triangles."""
     counts = np.diff(topology.face_starts) - 2
     faces = np.repeat(np.arange(topology.n_faces), counts)
     within = np.arange(len(faces)) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -41,14 +41,14 @@ def triangles_of(topology: Topology) -> Triangles:
 
 
 def face_areas(vertices: np.ndarray, topology: Topology) -> np.ndarray:
-    """Area of each face times its outward normal [m²], (n_faces, 3)."""
+    """Compute the area of each face times its outward normal [m²], (n_faces, 3)."""
     triangles = triangles_of(topology)
     a, b, c = (vertices[triangles.corners[:, i]] for i in range(3))
     return _sums(0.5 * np.cross(b - a, c - a), triangles.faces, topology.n_faces)
 
 
 def properties_of_all(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> VolumeProperties:
-    """Of m polyhedra; polyhedron p has the corners vertices[part_starts[p]:part_starts[p + 1]]."""
+    """Volume properties of m polyhedra; polyhedron p has the corners vertices[part_starts[p]:part_starts[p + 1]]."""
     counts, n = np.diff(part_starts), len(part_starts) - 1
     origin = np.add.reduceat(vertices, part_starts[:-1], axis=0) / counts[:, None]
     local = vertices - np.repeat(origin, counts, axis=0)
@@ -67,7 +67,7 @@ def properties_of_all(vertices: np.ndarray, part_starts: np.ndarray, topology: T
 
 
 def compound(parts: VolumeProperties, groups: np.ndarray, n_groups: int) -> VolumeProperties:
-    """Properties of bodies of several parts, by parallel axes; part p belongs to body groups[p]."""
+    """Combine the volume properties of parts into bodies, by parallel axes; part p belongs to body groups[p]."""
     volume = np.bincount(groups, parts.volume, n_groups)
     first = np.zeros((n_groups, 3))
     first[groups[::-1]] = parts.centroid[::-1]  # a point of each body, against loss of digits
@@ -80,13 +80,13 @@ def compound(parts: VolumeProperties, groups: np.ndarray, n_groups: int) -> Volu
 
 
 def inertia_tensors(second_moments: np.ndarray) -> np.ndarray:
-    """Tensors of inertia at unit density, tr(S) 1 − S [m5], (n, 3, 3), from second moments S."""
+    """Compute inertia tensors at unit density, tr(S) 1 − S [m5], (n, 3, 3), from second moments S."""
     traces = np.trace(second_moments, axis1=1, axis2=2)
     return traces[:, None, None] * np.eye(3) - second_moments
 
 
 def principal(tensors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Principal moments (n, 3) and axes: unit quaternions from principal axes to those of the tensors, (n, 4).
+    """Compute principal moments (n, 3) and axes: unit quaternions from principal axes to those of the tensors, (n, 4).
 
     Of the orders of the axes, one that turns them little: a body along the axes has the identity.
     """
@@ -107,7 +107,7 @@ def principal(tensors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def quaternions_of(matrices: np.ndarray) -> np.ndarray:
-    """Unit quaternions, scalar first and not negative, of rotation matrices (n, 3, 3), (n, 4); Shepperd 1978."""
+    """Convert rotation matrices (n, 3, 3) to unit quaternions, scalar first and not negative, (n, 4); Shepperd 1978."""
     m = matrices
     xx, yy, zz = m[:, 0, 0], m[:, 1, 1], m[:, 2, 2]
     products = np.empty((len(m), 4, 4))  # 4 q qᵀ
@@ -125,5 +125,5 @@ def quaternions_of(matrices: np.ndarray) -> np.ndarray:
 
 
 def _sums(values: np.ndarray, groups: np.ndarray, n: int) -> np.ndarray:
-    """Sums of rows (m, k) by group, (n, k)."""
+    """Sum rows (m, k) by group, (n, k)."""
     return np.stack([np.bincount(groups, values[:, k], n) for k in range(values.shape[1])], axis=1)

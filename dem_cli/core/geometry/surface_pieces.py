@@ -17,7 +17,7 @@ GAUSS = 0.5 / np.sqrt(3.0)  # of a segment, from its middle: two points are exac
 
 
 def kept(piece: np.ndarray, normal: np.ndarray, offset: float) -> np.ndarray:
-    """What of a piece lies in a half-space; (0, d): nothing. Sutherland and Hodgman (1974)."""
+    """Clip a piece by a half-space; (0, d) where nothing is left. Sutherland and Hodgman (1974)."""
     heights = product(piece, normal) - offset
     heights[np.abs(heights) <= ON_PLANE * np.ptp(piece, axis=0).sum()] = 0.0
     if (heights <= 0.0).all():
@@ -36,7 +36,7 @@ def kept(piece: np.ndarray, normal: np.ndarray, offset: float) -> np.ndarray:
 
 
 def inside(piece: np.ndarray, normals: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """What of a piece lies in all half-spaces; (0, d): nothing."""
+    """Clip a piece by all of several half-spaces; (0, d) where nothing is left."""
     for normal, offset in zip(normals, offsets, strict=True):
         piece = kept(piece, normal, offset)
         if not len(piece):
@@ -45,7 +45,7 @@ def inside(piece: np.ndarray, normals: np.ndarray, offsets: np.ndarray) -> np.nd
 
 
 def outside(piece: np.ndarray, normals: np.ndarray, offsets: np.ndarray) -> Iterator[np.ndarray]:
-    """What of a piece does not lie in all half-spaces together, in convex pieces."""
+    """Subtract the intersection of half-spaces from a piece; yields convex pieces."""
     for normal, offset in zip(normals, offsets, strict=True):
         within = kept(piece, normal, offset)
         if within is piece:  # all of it, also where it lies on the plane
@@ -59,7 +59,7 @@ def outside(piece: np.ndarray, normals: np.ndarray, offsets: np.ndarray) -> Iter
 
 
 def measure(piece: np.ndarray) -> float:
-    """Length of a segment [m], area of a polygon [m²]; 0 of nothing."""
+    """Compute the length of a segment [m], or the area of a polygon [m²]; 0 for an empty piece."""
     if len(piece) < piece.shape[1]:
         return 0.0
     if piece.shape[1] == 2:
@@ -68,7 +68,7 @@ def measure(piece: np.ndarray) -> float:
 
 
 def quadrature(piece: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points (n, d) and weights (n,) [m, m²] whose sums are the integrals of polynomials of second degree, exactly.
+    """Compute quadrature points (n, d) and weights (n,) [m, m²] of a piece, exact for polynomials of second degree.
 
     Two points of Gauss on a segment, the middles of the sides of each triangle from the first corner of a polygon.
     """
@@ -81,7 +81,7 @@ def quadrature(piece: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def over_disc(piece: np.ndarray, centre: np.ndarray, radius: float) -> tuple[float, np.ndarray]:
-    """Area, seen from above, of what of a polygon in space lies over or under a disc [m²], and its centroid (3,) [m].
+    """Compute the area of a polygon over or under a disc, seen from above [m²], and its centroid (3,) [m].
 
     centre (2,) and radius [m]; no upright polygon. Green's theorem along the sides: what of one lies within the circle
     bounds a triangle with the centre, what lies outside a sector.
@@ -108,7 +108,9 @@ def over_disc(piece: np.ndarray, centre: np.ndarray, radius: float) -> tuple[flo
 
 
 def _within(start: np.ndarray, end: np.ndarray, radius: float) -> tuple[float, float]:
-    """Shares of the way between two points (2,) at which it enters and leaves a circle about the origin."""
+    """Intersect the line between two points (2,) with a circle about the origin: shares of the way at entry and
+    exit.
+    """
     along = end - start
     length = product(along, along)
     beside = _cross(start, along) ** 2
@@ -123,13 +125,13 @@ def _cross(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def _products(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Cross products in space (n, 3): np.cross takes ten times as long for a few."""
+    """Compute cross products in space (n, 3): np.cross takes ten times as long for a few."""
     (x, y, z), (u, v, w) = a.T, b.T
     return np.array([y * w - z * v, z * u - x * w, x * v - y * u]).T
 
 
 def shadow(normals: np.ndarray, offsets: np.ndarray, level: float = 1e-9) -> tuple[np.ndarray, np.ndarray]:
-    """Half-spaces of all that lies in or under a convex body, which is within the half-spaces given.
+    """Compute the half-spaces of all that lies in or under a convex body given by half-spaces.
 
     Up is the last axis. Faces that look up or sideways stay; each pair of one that looks up and one that looks down
     gives an upright plane (Fourier and Motzkin: the height between them is not negative). level: |normal| of a

@@ -18,7 +18,7 @@ from dem_cli.core.geometry.polyhedron import Polyhedron
 
 @dataclass(frozen=True, eq=False)
 class Topology:
-    """Which corners bound which face of which convex part."""
+    """Faces of convex parts and the corners of each face."""
 
     part_faces: np.ndarray  # part p has the faces part_faces[p]:part_faces[p + 1], (n_parts + 1,) int64
     face_starts: np.ndarray  # face f has face_corners[face_starts[f]:face_starts[f + 1]], (n_faces + 1,) int64
@@ -58,20 +58,20 @@ class Topology:
 
     @cached_property
     def part_edges(self) -> np.ndarray:
-        """Part p has the edges part_edges[p]:part_edges[p + 1], (n_parts + 1,)."""
+        """Ranges of the edges of parts, (n_parts + 1,): part p has the edges part_edges[p]:part_edges[p + 1]."""
         parts = self.face_parts[self.edges[:, 2]]
         return np.searchsorted(parts, np.arange(len(self.part_faces)))
 
 
 def topology_of_polygons(part_starts: np.ndarray) -> Topology:
-    """Of polygons with the corners part_starts[p]:part_starts[p + 1]: face k starts at corner k."""
+    """Build the topology of polygons with the corners part_starts[p]:part_starts[p + 1]: face k starts at corner k."""
     n = int(part_starts[-1])
     corners = np.column_stack([np.arange(n), polygon.following(part_starts)])
     return Topology(np.asarray(part_starts, np.int64), np.arange(0, 2 * n + 1, 2), corners.ravel())
 
 
 def topology_of_polyhedra(solids: Sequence[Polyhedron]) -> Topology:
-    """Of polyhedra whose corners follow each other in one array; those with the same `faces` are done once."""
+    """Build the topology of polyhedra whose corners follow each other in one array; equal `faces` are done once."""
     kinds: dict[int, tuple[np.ndarray, np.ndarray]] = {}
     for solid in solids:
         if id(solid.faces) not in kinds:

@@ -1,4 +1,4 @@
-"""n steps in one compiled call: contact forces, load, damping, kick, drift.
+"""Time steps in one compiled call: contact forces, load, damping, velocities, positions.
 
 Leapfrog: positions and forces at whole steps, velocities half a step behind. In quasi-static runs
 the step is 1 and the masses are fictitious. The ledger sums what each group of forces really did,
@@ -43,7 +43,7 @@ from dem_cli.core.kernels.vec import in_a_row
 
 @inline
 def along_live_load(forces, dead_loads, live_loads, inverse_masses, dead):
-    """q·M⁻¹(F + f0), which a live factor λ brings to zero: q·M⁻¹(F + f0 + λ q) = 0."""
+    """Force along the live load, q·M⁻¹(F + f0), which a live factor λ brings to zero: q·M⁻¹(F + f0 + λ q) = 0."""
     total = 0.0
     for i in range(forces.size):
         total += live_loads[i] * inverse_masses[i] * (forces[i] + dead * dead_loads[i])
@@ -52,7 +52,9 @@ def along_live_load(forces, dead_loads, live_loads, inverse_masses, dead):
 
 @inline
 def carry(along, stiffness, tilts, control):
-    """The live factor that leaves no force along the live load; a table turns gravity by θ: dead cos θ + live sin θ."""
+    """Compute the live factor that balances the forces along the live load; a tilting table turns gravity by θ: dead
+    cos θ + live sin θ.
+    """
     factor = -along / stiffness
     if tilts:
         factor = min(max(factor, -1.0), 1.0)
@@ -62,13 +64,14 @@ def carry(along, stiffness, tilts, control):
 
 @inline
 def _sign(x):
-    """−1, 0 or 1; without a branch."""
+    """Return the sign of a number, −1, 0 or 1; without a branch."""
     return (1.0 if x > 0.0 else 0.0) - (1.0 if x < 0.0 else 0.0)
 
 
 @inline
 def local_drag(unbalanced, previous, velocity, damp, damp_change):
-    """Damping force against the motion: (α sgn v − α' sgn ΔF)|F|, local and combined damping (Cundall 1987).
+    """Compute the local damping force against the motion: (α sgn v − α' sgn ΔF)|F|, local and combined damping (Cundall
+    1987).
 
     The part with the change of force damps vibrations of a block that drifts, where sgn v cannot.
     """
@@ -79,7 +82,7 @@ def local_drag(unbalanced, previous, velocity, damp, damp_change):
 def driven_flow(
     velocities, forces, previous, dead_loads, live_loads, inverse_masses, dead, live, damp, damp_change, dt
 ):  # fmt: skip
-    """q·v after the step, local damping included, before the impulse of the live load that makes it the rate."""
+    """Velocity along the live load, q·v, after the step with damping, before the impulse that sets the rate."""
     flow = 0.0
     for i in range(forces.size):
         q = live_loads[i]
@@ -92,7 +95,9 @@ def driven_flow(
 
 @inline
 def steered_flow(velocities, live_loads):
-    """q·v. Where velocities are steered (FIRE) what drives them has no component along the live load."""
+    """Compute the velocity along the live load, q·v. Where velocities are steered (FIRE) what drives them has no
+    component along the live load.
+    """
     flow = 0.0
     for i in range(live_loads.size):
         flow += live_loads[i] * velocities[i]
@@ -101,7 +106,7 @@ def steered_flow(velocities, live_loads):
 
 @inline
 def powers(velocities, forces, dead_loads, live_loads, inverse_masses, dead, live):
-    """F·v, v·Mv and F·M⁻¹F, by which FIRE steers."""
+    """Compute the powers F·v, v·Mv and F·M⁻¹F, by which FIRE steers."""
     power = speed2 = force2 = 0.0
     for i in range(forces.size):
         inverse = inverse_masses[i]
@@ -115,7 +120,9 @@ def powers(velocities, forces, dead_loads, live_loads, inverse_masses, dead, liv
 
 @inline
 def steering(power, speed2, force2, control):
-    """FIRE (Bitzek et al. 2006) in the metric of the masses: v <- keep v + steer M⁻¹F, and a stop when uphill."""
+    """Steer velocities by FIRE (Bitzek et al. 2006) in the metric of the masses: v <- keep v + steer M⁻¹F. Motion
+    uphill is stopped.
+    """
     if power <= 0.0 or force2 == 0.0:
         control[SINCE_UPHILL] = 0.0
         control[FIRE_MIX] = control[FIRE_START]
@@ -129,7 +136,7 @@ def steering(power, speed2, force2, control):
 
 @inline
 def _clip(x, limit):
-    """x between −limit and limit."""
+    """Limit x to between −limit and limit."""
     return limit if x > limit else -limit if x < -limit else x
 
 
@@ -138,7 +145,7 @@ def kick(
     velocities, forces, previous, dead_loads, live_loads, inverse_masses, speed_limits, means, drags,
     dead, live, damp, damp_change, keep, steer, impulse, dt,
 ):  # fmt: skip
-    """Velocities from forces, damped; leaves mean velocities and damping forces for `book`.
+    """Update velocities from forces, with damping; leaves mean velocities and damping forces for `book`.
 
     Plain loops without sums, so that the compiler works on several degrees of freedom at once.
     """
@@ -176,7 +183,7 @@ def kick(
 def book(
     forces, dead_loads, live_loads, inverse_masses, means, drags, dead, live, impulse, dt, carried, ledger
 ):  # fmt: skip
-    """Work of one step into the ledger.
+    """Add the work of one step to the ledger (energy balance).
 
     Work is force × mean of the velocities of the two drifts around it, so that it adds up to force ×
     displacement; whatever steering, damping or a speed limit takes from the motion is booked as damping.
@@ -202,7 +209,7 @@ def book(
 
 @inline
 def mobility(live_loads, inverse_masses):
-    """How fast the live load moves per unit of its multiplier and time, all blocks free."""
+    """Compute the mobility along the live load: its velocity per unit of multiplier and time, all blocks free."""
     total = 0.0
     for i in range(live_loads.size):
         total += live_loads[i] * live_loads[i] * inverse_masses[i]
@@ -211,7 +218,7 @@ def mobility(live_loads, inverse_masses):
 
 @inline
 def is_carried(velocities, inverse_masses):
-    """Whether a support moves."""
+    """Test whether a support moves."""
     carried = False
     for i in range(velocities.size):
         carried = carried or (inverse_masses[i] == 0.0 and velocities[i] != 0.0)
@@ -220,7 +227,7 @@ def is_carried(velocities, inverse_masses):
 
 @inline
 def largest_unbalanced(unbalanced, force_scales):
-    """The largest unbalanced force, over what it is measured by."""
+    """Compute the largest unbalanced force over its force scale."""
     largest = 0.0
     for i in range(unbalanced.size):
         largest = max(largest, abs(unbalanced[i]) * force_scales[i])
@@ -235,7 +242,7 @@ def make_advance(
     moves: bool = False,
     bends: bool = False,
 ) -> Callable:
-    """The compiled stepping loop for one contact loop, one way to move the blocks and the links that there are.
+    """Make the compiled stepping loop for one contact loop, one way to move the blocks and the links of the model.
 
     strains: blocks deform; moves: on geometry that moves; bends: in quadratic modes as well.
     """

@@ -1,4 +1,4 @@
-"""The loop over joints whose geometry does not move, 2D and 3D: relative motion, law, forces on the blocks, work lost.
+"""Contact forces of joints in fixed geometry, 2D and 3D: relative motion, law, forces on the blocks, work lost.
 
 Joint by joint: the motion of b against a at one anchor and its spin are worked out once in the frame of the joint; a
 point adds its place in the joint plane. Forces add up in the frame and are turned into space once. The gap is
@@ -47,7 +47,7 @@ from dem_cli.core.kernels.vec import axpy, components, compose, load, load_frame
 
 @inline
 def pressed_at(places, normals, first, last, like, like_rotation):
-    """Centre of pressure of the points from first to last of a joint, in its plane."""
+    """Compute the centre of pressure of the points from first to last of a joint, in its plane."""
     push, twist = 0.0, scale(0.0, like_rotation)
     for p in range(first, last):
         point = np.uint64(p)
@@ -59,7 +59,7 @@ def pressed_at(places, normals, first, last, like, like_rotation):
 def make_contact_forces(
     law: Callable, bonded: bool = False, strains: bool = False, bends: bool = False, elastic: bool = False
 ) -> Callable:
-    """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
+    """Make the contact loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     strains: blocks deform (kernels/deformation); bends: in quadratic modes as well, 2D;
     elastic: there are faces over which pressure is integrated (kernels/deformation/pressed_faces.py).
@@ -68,7 +68,7 @@ def make_contact_forces(
 
     @inline
     def contact_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
-        """Adds the forces of all joints on their blocks to `forces`; returns the work lost [J]."""
+        """Add the forces of all joints on their blocks to `forces`; returns the work lost [J]."""
         blocks, starts, axes, arms, places = joints.blocks, joints.starts, joints.axes, joints.arms, joints.places
         gaps, normals, velocities, forces = contacts.gaps, contacts.normal, bodies.velocities, bodies.forces
         stretchings, d = bodies.stretchings, len(like)

@@ -1,4 +1,4 @@
-"""One contact point, whatever its geometry: law, forces, slip path, work lost, forces on the blocks. For all loops."""
+"""Forces at a contact point for all loops: law, forces, slip path, work lost, forces on the blocks. For all loops."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dem_cli.core.kernels.vec import add_at, add_torques, axpy, compose, dot, lo
 
 @always_inline
 def meeting(gap, opened):
-    """The gap that a point shows its spring in the steps in which it closes or opens, in time histories.
+    """Correct the gap of a spring in the steps in which it closes or opens, in time histories, so that energy is kept.
 
     With overlaps x before, y now and z next the leapfrog does the work f (z − x)/2, and a closed spring holds k y z/2
     between two steps. Nothing is gained or lost on the way from an open point (x < 0) where f (z − x) = k y z; with
@@ -25,7 +25,7 @@ def meeting(gap, opened):
 
 @always_inline
 def jolt(gap, opened, before, after):
-    """Work that a step takes which closes a point, beyond what its spring stores; negative: gives, which opens it [J].
+    """Compute the work of a step that closes a point beyond what its spring stores [J]; negative where one opens it.
 
     gap: after the step [m]; before, after: normal forces [N]. Work is the mean of both forces × the way between them,
     gap and all, while a spring knows but its own part of the way: what a point falls through counts half its force.
@@ -37,7 +37,7 @@ def jolt(gap, opened, before, after):
 
 @always_inline
 def swing(before, gap, pressed, normal):
-    """Work that a step takes of a point of an elastic face beyond what its pressure stores [J]: see `jolt`.
+    """Compute the work of a step at a point of an elastic face beyond what its pressure stores [J]: see `jolt`.
 
     before, gap: its gaps before and after the step [m]; pressed, normal: its forces [N]. Work is the mean of both
     forces × the way between; summed over the face ½ Σ F (−g) is stored (kernels/deformation/pressed_faces.py).
@@ -47,25 +47,26 @@ def swing(before, gap, pressed, normal):
 
 @always_inline
 def plastic_slide(old, shear, slide, ks):
-    """What of a slide the shear spring did not take up: slide + Δs/ks [m]."""
+    """Compute the plastic part of a slide, which the shear spring did not take up: slide + Δs/ks [m]."""
     return axpy(1.0 / ks, axpy(-1.0, old, shear), slide)
 
 
 @always_inline
 def friction_work(old, shear, plastic):
-    """Work that friction takes: mean of the forces really applied × plastic slide [J]."""
+    """Compute the work lost by friction: mean of the forces really applied × plastic slide [J]."""
     return -0.5 * (dot(old, plastic) + dot(shear, plastic))
 
 
 def make_press(law: Callable, bonded: bool = False) -> Callable:
-    """What happens at one point that touches or did: a function for the loops.
+    """Make the function that computes the forces at one point that touches or did, for the contact loops.
 
     bonded: the law carries tension or deforms for good across the joint, so that normal springs lose work too.
     """
 
     @always_inline
     def press(gap, opened, slide, joints, contacts, joint, point):
-        """Normal and shear force of a point [N], kept in `contacts` with its slip path, and the work lost there [J].
+        """Compute normal and shear force of a point [N], kept in `contacts` with its slip path, and the work lost there
+        [J].
 
         opened, slide: by how much b moved against a in this step, across and along the joint [m].
         """
@@ -90,7 +91,7 @@ def make_press(law: Callable, bonded: bool = False) -> Callable:
 
 @always_inline
 def add_force(frame, levers_a, levers_b, normal, shear, force, torque_a, torque_b):
-    """Force and moments of a joint on its blocks, with those of one more point that has levers of its own."""
+    """Add force and moments of a contact point to those of its joint; the point has levers of its own."""
     return (
         compose(frame, normal, shear, force),
         add_torques(levers_a, normal, shear, torque_a),
@@ -100,7 +101,7 @@ def add_force(frame, levers_a, levers_b, normal, shear, force, torque_a, torque_
 
 @inline
 def push_apart(forces, a, b, force, torque_a, torque_b):
-    """Force and moments of a joint onto block b, and against block a."""
+    """Apply force and moments of a joint onto block b, and against block a."""
     add_at(forces, a, 0, force, -1.0)
     add_at(forces, b, 0, force, 1.0)
     add_at(forces, a, len(force), torque_a, -1.0)

@@ -39,7 +39,8 @@ WIDTH = 16  # of which the last is empty: two lines of the cache
 
 @always_inline
 def _put_turn(rows, row, k, levers, masses, turning, viscous, rate, more):
-    """What a turn does to an impulse, column k of KEEP, GAIN and GIVEN: it gives up J/(1 + C K) + C (w₀ + w)/(1 + C K).
+    """Store how an impulse relaxes in one sweep, columns k of KEEP, GAIN and GIVEN: by J/(1 + C K) + C (w₀ + w)/(1 + C
+    K).
 
     viscous: C, half of damping × step [kg]; K: rates by impulses at the point [1/kg], of the masses (sum of both
     inverses), of turning, of both blocks by their levers, and what more there is of modes.
@@ -53,13 +54,13 @@ def _put_turn(rows, row, k, levers, masses, turning, viscous, rate, more):
 
 @always_inline
 def least_of(normal, dt):
-    """The least impulse across a joint: spring and dashpot together do not pull, but for what is bonded."""
+    """Compute the least impulse across a joint: spring and dashpot together do not pull, but for what is bonded."""
     return -normal * dt if normal >= 0.0 else -np.inf
 
 
 @always_inline
 def forget(states, memory, point, first):
-    """An open point holds no impulse and no force of its elements."""
+    """Clear the impulse and the Maxwell forces of an open point."""
     states[point] = OPEN
     for k in range(first, memory.shape[1]):
         memory[point, k] = 0.0
@@ -67,7 +68,7 @@ def forget(states, memory, point, first):
 
 @always_inline
 def touch(states, seen, slips, point):
-    """Notes whether a point sticks or slips; whether it has met, the share of the step before that it was closed."""
+    """Record whether a point sticks or slips; where it has met, the share of the step before that it was closed."""
     before = states[point]
     states[point] = STICKS if slips[point] == seen[point] else SLIPS
     seen[point] = slips[point]
@@ -76,19 +77,19 @@ def touch(states, seen, slips, point):
 
 @always_inline
 def closed_share(gap, opening, dt):
-    """Share of the step before in which a point was closed that has met by now, at the speed at which it closed."""
+    """Share of the step before in which a point that has met was closed, at the speed at which it closed."""
     return min(max(gap / (opening * dt), 0.0), 1.0)
 
 
 @always_inline
 def begin_joint(dampers, joint, n_rows):
-    """A joint whose rows begin here, if it gets any."""
+    """Mark where the rows of a joint begin, if it gets any."""
     dampers.packed[joint], dampers.met[joint] = n_rows, 0
 
 
 @always_inline
 def end_joint(dampers, joint, n_rows, n_active):
-    """A joint has all its rows: it is swept if these are any. Returns how many joints there are to sweep."""
+    """Add a joint with rows to the joints to sweep; returns how many joints there are to sweep."""
     if n_rows > dampers.packed[joint]:
         dampers.active[n_active] = joint
         n_active += 1
@@ -97,7 +98,7 @@ def end_joint(dampers, joint, n_rows, n_active):
 
 @always_inline
 def stir(dampers, joint, a, b, turn, change):
-    """Notes the turn in which a joint changed its impulses by so much [N s] that others on its blocks notice.
+    """Record the sweep in which a joint changed its impulses by so much [N s] that its neighbours are affected.
 
     At first only where points have met, then wherever it spreads to.
     """
@@ -110,7 +111,7 @@ def stir(dampers, joint, a, b, turn, change):
 
 @inline
 def waken(joints, dampers, n_active, turn):
-    """Joints to sweep in a turn after the first: those of blocks stirred in the one before. Returns how many."""
+    """Find the joints to sweep after the first turn: those of blocks stirred in the turn before. Returns how many."""
     blocks, active, awake, stirred = joints.blocks, dampers.active, dampers.awake, dampers.stirred
     found = 0
     for i in range(n_active):
@@ -123,7 +124,8 @@ def waken(joints, dampers, n_active, turn):
 
 @inline
 def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
-    """States of all points before the kick; rows of `gains` for those that touch, of joint j from packed[j] on.
+    """Determine states of all points before the kick; rows of `gains` for those that touch, of joint j from packed[j]
+    on.
 
     Puts the impulses of the step before, as far as they may go on, into `pushes`, and adds the forces of Maxwell
     elements to `forces`. Returns how many points have met.
@@ -213,7 +215,7 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
 
 
 def pull(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like):
-    """Forces of the Maxwell elements of a point after the step before, on those of its blocks; none: not compiled."""
+    """Add forces of the Maxwell elements of a point after the step before to its blocks; none: not compiled."""
     if elements.ndim > 1:
         _pull(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like)
 
@@ -227,7 +229,7 @@ def _pulled(elements, contacts, bodies, dampers, a, b, point, frame, reaches, st
 
 @inline
 def _pull(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like):
-    """Forces of the Maxwell elements of a point after the step before, added to those of its blocks."""
+    """Add forces of the Maxwell elements of a point after the step before to those of its blocks."""
     first, memory, forces, d = dampers.first, contacts.memory, bodies.forces, len(like)
     state, pressed = dampers.states[point], contacts.normal[point]
     _relax(memory, dampers.rates, elements, state, pressed, stiffness, closed, point, first, d)
@@ -246,7 +248,7 @@ def _pull(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stif
 
 @inline
 def _relax(memory, rates, elements, state, pressed, stiffness, closed, point, first, d):
-    """Forces of the Maxwell elements of a point after a step at constant rates; with its own they do not pull.
+    """Relax the Maxwell forces of a point over a step at constant rates; with its own force they do not pull.
 
     closed: share of the step in which the point was closed; what has just met or begun held nothing before.
     """
@@ -266,7 +268,7 @@ def _relax(memory, rates, elements, state, pressed, stiffness, closed, point, fi
 
 @inline
 def _sweep(joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, backwards, like, like_rotation):
-    """One sweep over the impulses of n joints; backwards: which are then kept with the points, too."""
+    """Relax the impulses of n joints in one sweep; backwards: which are then kept with the points, too."""
     blocks, velocities, mobilities, memory = joints.blocks, bodies.velocities, bodies.mobilities, contacts.memory
     rows, packed, holders, first = dampers.gains, dampers.packed, dampers.holders, dampers.first
     d, motions = len(like), dampers.motions
@@ -319,11 +321,13 @@ def _sweep(joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, ba
 
 
 def make_turns(sweep: Callable) -> Callable:
-    """Turns of all impulses by one kind of sweep, each to and fro; after the first where impulses still change."""
+    """Make the solver of all impulses by one kind of sweep, each to and fro; after the first where impulses still
+    change.
+    """
 
     @inline
     def take_turns(joints, contacts, bodies, inverse_masses, dampers, turns, like, like_rotation):
-        """Up to so many turns, on the velocities after the kick."""
+        """Sweep all impulses up to so many times, on the velocities after the kick."""
         dampers.stirred[:] = 0
         swept, n_active = dampers.active, dampers.active[-1]
         n = n_active
@@ -343,7 +347,7 @@ turns_in_plane = make_turns(_sweep)
 
 @inline
 def resist_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation):
-    """As spatial_dashpots.resist."""
+    """Apply the impulses of all dashpots in the plane to the velocities after the kick."""
     velocities, mobilities, pushes, d = bodies.velocities, bodies.mobilities, dampers.pushes, len(like)
     for block in range(velocities.shape[0]):
         for k in range(d):
@@ -355,7 +359,7 @@ def resist_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, turns
 
 
 def book_elements(elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation):
-    """What Maxwell elements took in this step, by the mean rates over it; none: not compiled."""
+    """Add the work of Maxwell elements in this step to the ledger, by the mean rates over it; none: not compiled."""
     if elements.ndim > 1:
         _book_elements(elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation)
 
@@ -369,7 +373,7 @@ def _booked(elements, joints, contacts, bodies, dampers, dt, ledger, like, like_
 
 @inline
 def _book_elements(elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation):
-    """Adds it to the ledger."""
+    """Add the work of Maxwell elements in this step to the ledger."""
     blocks, starts, frames, memory = joints.blocks, joints.starts, joints.frames, contacts.memory
     positions, velocities = bodies.positions, bodies.velocities
     rates, states, first, n_elements = dampers.rates, dampers.states, dampers.first, elements.shape[0]
@@ -397,7 +401,9 @@ def _book_elements(elements, joints, contacts, bodies, dampers, dt, ledger, like
 
 @inline
 def book_supports(joints, contacts, bodies, old, inverse_masses, dampers, ledger, like, like_rotation):
-    """Work of moving supports through dashpots: theirs, and lost there. old: velocities before the step."""
+    """Add the work of moving supports through dashpots to the ledger: theirs, and what is lost there. old: velocities
+    before the step.
+    """
     blocks, starts, frames, memory = joints.blocks, joints.starts, joints.frames, contacts.memory
     positions, velocities = bodies.positions, bodies.velocities
     states, first, d, work = dampers.states, dampers.first, len(like), 0.0

@@ -1,4 +1,4 @@
-"""Positions from velocities, with or without the corners of the blocks."""
+"""Position update of blocks from velocities, with or without the corners of the blocks."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from dem_cli.core.kernels.vec import axpy, load, norm, scale, store
 
 @always_inline
 def _turn(angle):
-    """cos and sin; for small angles the polynomials of fdlibm, the same on every machine, below 1 ulp."""
+    """Compute cos and sin; for small angles the polynomials of fdlibm, the same on every machine, below 1 ulp."""
     if abs(angle) > 0.7854:
         return math.cos(angle), math.sin(angle)
     z = angle * angle
@@ -55,7 +55,7 @@ def _turn(angle):
 
 @inline
 def drift_centroids(bodies, shape, dt, like):
-    """Positions and rotation vectors from velocities; to first order rotations add up."""
+    """Update positions and rotation vectors from velocities; to first order rotations add up."""
     positions, orientations, velocities = bodies.positions, bodies.orientations, bodies.velocities
     d, r = len(like), orientations.shape[1]
     for number in range(positions.shape[0]):
@@ -69,7 +69,7 @@ def drift_centroids(bodies, shape, dt, like):
 
 @inline
 def drift_corners(bodies, shape, dt, like):
-    """Positions and corners from velocities, 2D; returns the largest travel of a corner since detection [m]."""
+    """Update positions and corners from velocities, 2D; returns the largest travel of a corner since detection [m]."""
     positions, orientations, velocities = bodies.positions, bodies.orientations, bodies.velocities
     corners, travel, radii, turns = bodies.corners, bodies.travel, shape.radii, bodies.turns
     corner_blocks, arms = shape.corner_blocks, shape.corner_arms
@@ -98,14 +98,14 @@ def drift_corners(bodies, shape, dt, like):
 
 @inline
 def drift_strained_centroids(bodies, shape, dt, like):
-    """As drift_centroids, of blocks that deform."""
+    """Update positions, rotation vectors and modes of blocks that deform, without their corners."""
     deform(bodies, dt)
     return drift_centroids(bodies, shape, dt, like)
 
 
 @inline
 def drift_strained_corners(bodies, shape, dt, like):
-    """As drift_corners, of blocks that deform: x = c + R (I + ε) X, so that edges stay straight."""
+    """Update positions and corners of blocks that deform, 2D: x = c + R (I + ε) X, so that edges stay straight."""
     positions, orientations, velocities = bodies.positions, bodies.orientations, bodies.velocities
     corners, travel, turns, gradients = bodies.corners, bodies.travel, bodies.turns, bodies.gradients
     corner_blocks, arms, radii = shape.corner_blocks, shape.corner_arms, shape.radii
@@ -135,7 +135,7 @@ def drift_strained_corners(bodies, shape, dt, like):
 
 @inline
 def drift_bent_corners(bodies, shape, dt, like):
-    """As drift_strained_corners, of blocks that have quadratic modes as well; these move no corner."""
+    """Update blocks that have quadratic modes as well, 2D; these modes move no corner."""
     largest = drift_strained_corners(bodies, shape, dt, like)
     store_bends(bodies, shape)
     return largest
@@ -143,7 +143,7 @@ def drift_bent_corners(bodies, shape, dt, like):
 
 @inline
 def _go(bodies, shape, i, dt, like, spin):
-    """Moves a centroid in space and adds to its travel; returns the travel of the farthest corner [m]."""
+    """Move a centroid in space and add to its travel; returns the travel of the farthest corner [m]."""
     speed = load(bodies.velocities, i, 0, like)
     store(bodies.positions, i, 0, axpy(dt, speed, load(bodies.positions, i, 0, like)))
     moved = bodies.travel[i] + dt * (norm(speed) + shape.radii[i] * norm(spin))
@@ -153,7 +153,7 @@ def _go(bodies, shape, i, dt, like, spin):
 
 @inline
 def _take_corners(bodies, shape, turns):
-    """Corners of blocks in space where these have gone to; turns: rotations, or gradients of blocks that deform."""
+    """Compute corners of blocks in space; turns: rotations, or gradients of blocks that deform."""
     corners, positions = bodies.corners, bodies.positions
     corner_blocks, arms = shape.corner_blocks, shape.corner_arms
     for number in range(corners.shape[0]):
@@ -167,7 +167,9 @@ def _take_corners(bodies, shape, turns):
 
 @inline
 def drift_solids(bodies, shape, dt, like):
-    """Positions, quaternions and corners in space, in pseudo-time, where velocities stay; returns as drift_corners."""
+    """Update positions, quaternions and corners in space, in pseudo-time, where velocities stay; returns as
+    drift_corners.
+    """
     velocities, orientations, largest = bodies.velocities, bodies.orientations, 0.0
     for number in range(velocities.shape[0]):
         i = np.uint64(number)
@@ -181,7 +183,7 @@ def drift_solids(bodies, shape, dt, like):
 
 @inline
 def drift_strained_solids(bodies, shape, dt, like):
-    """As drift_solids, of blocks that deform: x = c + R (I + ε) X, so that faces stay plane."""
+    """Update blocks in space that deform: x = c + R (I + ε) X, so that faces stay plane."""
     velocities, orientations, largest = bodies.velocities, bodies.orientations, 0.0
     deform(bodies, dt)
     for number in range(velocities.shape[0]):
@@ -199,8 +201,9 @@ def drift_strained_solids(bodies, shape, dt, like):
 
 @inline
 def drift_tumbling(bodies, shape, dt, like):
-    """As drift_solids in real time: spins change as blocks turn that no torque acts on, mobilities follow; supports
-    keep the velocities that they are given."""
+    """Update blocks in space in real time: spins change as blocks turn without torque, and mobilities follow. Supports
+    keep the velocities that they are given. Returns as drift_corners.
+    """
     velocities, orientations, turns, mobilities = (
         bodies.velocities, bodies.orientations, bodies.turns, bodies.mobilities
     )  # fmt: skip
@@ -232,7 +235,7 @@ def drift_tumbling(bodies, shape, dt, like):
 
 @inline
 def drift_strained_tumbling(bodies, shape, dt, like):
-    """As drift_tumbling, of blocks that deform."""
+    """Update blocks in space that deform, in real time, as drift_tumbling does rigid ones."""
     deform(bodies, dt)
     drift_tumbling(bodies, shape, dt, like)
     largest = 0.0

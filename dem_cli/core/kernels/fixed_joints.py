@@ -1,4 +1,4 @@
-"""Joints of geometry that does not move, joint by joint: one frame, two arms to one place, points in the joint plane.
+"""Joints of fixed geometry, joint by joint: one frame, two arms to one place, points in the joint plane.
 
 A contact point is but its place in the plane of its joint. What is asked for point by point (frames, levers, places in
 space) is worked out from that.
@@ -17,7 +17,7 @@ NO_SHARES = np.zeros(0)
 
 
 class FixedJoints(NamedTuple):
-    """Joints as geometry of the start has them; a joint owns points starts[j]:starts[j + 1]."""
+    """Joints of fixed geometry; a joint owns points starts[j]:starts[j + 1]."""
 
     blocks: np.ndarray  # blocks a and b, (n_joints, 2)
     starts: np.ndarray  # first point of each joint, (n_joints + 1,)
@@ -52,18 +52,20 @@ class FixedJoints(NamedTuple):
 
     @property
     def frames(self) -> np.ndarray:
-        """Of every point, as `Joints.frames`, (n_points, d·d)."""
+        """Frames of every point, as `Joints.frames`, (n_points, d·d)."""
         d = self.anchors.shape[1]
         return self.directions.reshape(-1, d * d)[self.owners]
 
     @property
     def points(self) -> np.ndarray:
-        """Where the points are [m], (n_points, d)."""
+        """Places of the contact points [m], (n_points, d)."""
         return self.anchors[self.owners] + self._from_anchor()
 
     @property
     def levers(self) -> np.ndarray:
-        """Of every point, as `Joints.levers`: arm × direction, about the centroids of a and of b, (n_points, 2·d·r)."""
+        """Levers of every point, as `Joints.levers`: arm × direction, about the centroids of a and of b, (n_points,
+        2·d·r).
+        """
         d, owners = self.anchors.shape[1], self.owners
         r = 1 if d == 2 else 3
         arms = self.arms.reshape(-1, 2, 1, d)[owners] + self._from_anchor()[:, None, None]
@@ -72,7 +74,7 @@ class FixedJoints(NamedTuple):
         return levers.reshape(-1, 2 * d * r)
 
     def kept(self) -> FixedJoints:
-        """The same: nothing of it changes."""
+        """Return the record itself: nothing of it changes."""
         return self
 
     def _from_anchor(self) -> np.ndarray:

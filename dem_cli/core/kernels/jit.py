@@ -1,4 +1,4 @@
-"""The one door to numba: `@kernel` for compiled entry points, `@inline` for what they call.
+"""Decorators of compiled functions: `@kernel` for compiled entry points, `@inline` for what they call.
 
 Numba is loaded when a kernel is first compiled (kernels/compilation/door.py), a third of a second: what was kept of an
 earlier process (kept_code.py), or is called `uncompiled`, does without.
@@ -33,7 +33,7 @@ _door = Door()
 
 
 class CompiledKernel:
-    """A compiled function, and the Python function that it is compiled from."""
+    """Compiled function, and the Python function that it is compiled from."""
 
     def __init__(self, function: Callable) -> None:
         self.py_func = function
@@ -42,7 +42,7 @@ class CompiledKernel:
         self._way: Any = None  # that it was made
 
     def __call__(self, *arguments: Any) -> Any:
-        """Runs the compiled code; compiles it, or loads it, at the first call with these types."""
+        """Run the compiled code; compiles it, or loads it, at the first call with these types."""
         if _door.uncompiled:
             with np.errstate(all="ignore"):  # as compiled code does
                 return self.py_func(*arguments)
@@ -63,7 +63,8 @@ class CompiledKernel:
         return self._made()(*arguments)
 
     def bound(self) -> Callable:
-        """The compiled code itself, for more calls with the objects of the last one: it does not look at types, 7 µs.
+        """Return the compiled code itself, for more calls with the objects of the last one: it does not look at types,
+        7 µs.
 
         Numbers may be others of the same type; in the place of an array of another type it would read nonsense.
         """
@@ -84,18 +85,18 @@ class CompiledKernel:
         return self
 
     def __getattr__(self, name: str) -> Any:
-        """What numba knows of it."""
+        """Return attributes that numba's compiled function has."""
         return getattr(self._made(), name)
 
 
 def kernel(function: Callable) -> CompiledKernel:
-    """Compile once, keep on disk. IEEE division, no fast-math: same input, same bytes."""
+    """Declare a compiled entry point, kept on disk. IEEE division, no fast-math: same input, same bytes."""
     return CompiledKernel(function)
 
 
 @contextmanager
 def uncompiled() -> Iterator[None]:
-    """Kernels inside of it run as the Python that they are written in: a hundred times slower, but at once.
+    """Run kernels as plain Python inside of a `with` block: a hundred times slower, but at once.
 
     For a few blocks in all that is not worth loading numba. Python does not divide by zero, nor take roots of negative
     numbers: it raises ArithmeticError or ValueError where compiled code goes on with inf and nan.
@@ -108,24 +109,26 @@ def uncompiled() -> Iterator[None]:
 
 
 def threads_may_share() -> bool:
-    """Whether threads that run one compiled loop may add to the same arrays: numba as it comes has nothing for that."""
+    """Test whether threads in one compiled loop may add to the same arrays: plain numba has no atomic operations."""
     return SWITCH.own_way()
 
 
 def inline(function: Callable) -> Callable:
-    """For what kernels call."""
+    """Declare a function that kernels call."""
     _door.declare("declare_callee", function, False)
     return function
 
 
 def always_inline(function: Callable) -> Callable:
-    """For what is called for each point of the contact loop."""
+    """Declare a function that is always inlined, as it is called for each point of the contact loop."""
     _door.declare("declare_callee", function, True)
     return function
 
 
 def overload(function: Callable) -> Callable:
-    """What compiled code takes for a plain function: the decorated one returns it, by the types of its arguments."""
+    """Declare what compiled code runs for a plain function: the decorated one returns it, by the types of its
+    arguments.
+    """
 
     def declared(implementation: Callable) -> Callable:
         _door.declare("declare_overload", function, implementation)
@@ -135,7 +138,7 @@ def overload(function: Callable) -> Callable:
 
 
 def built_in(function: Callable) -> Callable:
-    """For what compiled code has LLVM code for, by its name: kernels/compilation/views.py, atomics.py, bits.py.
+    """Declare a function with LLVM code under its name in kernels/compilation/views.py, atomics.py or bits.py.
 
     Where kernels are compiled by numba as it comes, it does what it does in Python.
     """
@@ -144,7 +147,7 @@ def built_in(function: Callable) -> Callable:
 
 
 def named(function: Callable, *parts: Callable | str) -> Callable:
-    """The same closure, with a name that says what it was made of.
+    """Rename a closure by what it was made of.
 
     Numba tells functions of one name and types apart by a count that starts anew in each process. Of two closures
     that were compiled in two processes and come from the cache in a third, one may otherwise run for the other.

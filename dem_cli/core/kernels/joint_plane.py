@@ -14,7 +14,7 @@ LEAST_PUSH = 1e-250  # one over less than that may be infinite
 
 
 def sweep(spin, arm):
-    """Velocity of the tip of an arm that turns: ω × arm."""
+    """Compute the velocity of the tip of an arm that turns: ω × arm."""
     if len(arm) == 2:
         return -spin[0] * arm[1], spin[0] * arm[0]
     return (
@@ -36,7 +36,7 @@ def _sweep(spin, arm):
 
 
 def moment(arm, force):
-    """Moment of a force about the origin of its arm: arm × force."""
+    """Compute the moment of a force about the origin of its arm: arm × force."""
     if len(arm) == 2:
         return (arm[0] * force[1] - arm[1] * force[0],)
     return sweep(arm, force)
@@ -50,7 +50,7 @@ def _moment(arm, force):
 
 
 def seen_from(frame, rotation):
-    """Components of a rotation or moment along the normal and the tangents of a frame; in 2D it has but one."""
+    """Resolve a rotation or moment along the normal and the tangents of a frame; in 2D it has but one component."""
     if len(frame) == 2:
         return rotation
     return tuple(dot(axis, rotation) for axis in frame)
@@ -64,7 +64,7 @@ def _seen_from(frame, rotation):
 
 
 def seen_outside(frame, rotation):
-    """A rotation or moment given by its components along a frame, in space; in 2D it is the same."""
+    """Transform a rotation or moment from components along a frame to the world axes; in 2D it is unchanged."""
     if len(frame) == 2:
         return rotation
     return compose(frame, rotation[0], rotation[1:], (0.0, 0.0, 0.0))
@@ -80,7 +80,7 @@ def _seen_outside(frame, rotation):
 
 
 def opening_at(spin, place):
-    """Motion along the normal of a place in the joint plane when the joint opens by a spin, both in its frame."""
+    """Compute the normal motion of a place in the joint plane when the joint opens by a spin, both in its frame."""
     return -spin[0] * place[0] if len(place) == 1 else spin[1] * place[1] - spin[2] * place[0]
 
 
@@ -92,7 +92,7 @@ def _opening_at(spin, place):
 
 
 def sliding_at(slide, spin, place):
-    """Motion along the tangents of a place in the joint plane that slides and turns about its normal."""
+    """Compute the tangential motion of a place in the joint plane that slides and turns about its normal."""
     if len(place) == 1:
         return slide
     return slide[0] - spin[0] * place[1], slide[1] + spin[0] * place[0]
@@ -106,7 +106,9 @@ def _sliding_at(slide, spin, place):
 
 
 def add_moment_at(place, normal_part, tangent_parts, start):
-    """start + moment of a force at a place in the joint plane about the origin of places, all in the joint's frame."""
+    """Add to start the moment of a force at a place in the joint plane about the origin of places, in the joint's
+    frame.
+    """
     if len(place) == 1:
         return (start[0] - place[0] * normal_part,)
     return (
@@ -128,7 +130,7 @@ def _add_moment_at(place, normal_part, tangent_parts, start):
 
 
 def torsion_share(torsion, joint, like):
-    """FixedJoints.torsion of a joint; in 2D there is none."""
+    """Return FixedJoints.torsion of a joint; an empty tuple in 2D."""
     return 1.0 if len(like) == 2 else torsion[joint]
 
 
@@ -140,7 +142,9 @@ def _torsion_share(torsion, joint, like):
 
 
 def centre_of(push, twist):
-    """Where a push acts in the joint plane, by its moments about the tangents; without a push the origin of places."""
+    """Compute the centre of pressure in the joint plane from normal force and moments about the tangents. Without a
+    normal force it is the origin of places.
+    """
     if len(twist) == 1:
         return (0.0,)
     part = 1.0 / push if push > LEAST_PUSH else 0.0
@@ -160,7 +164,7 @@ def _centre_of(push, twist):
 
 
 def drawn_in(slide, spin, centre, share):
-    """Slide and spin by which `sliding_at` gives the slides at c + share × (r − c) for places r, c: centre."""
+    """Compute slide and spin by which `sliding_at` gives the slides at c + share × (r − c) for places r, c: centre."""
     if len(spin) == 1:
         return slide, spin
     rest = (1.0 - share) * spin[0]
@@ -180,7 +184,7 @@ def _drawn_in(slide, spin, centre, share):
 
 
 def torsion_of(twist, rub, centre, share):
-    """The moment of all forces of a joint, where those along it act at c + share × (r − c); twist: as if at r."""
+    """Moment of all forces of a joint, where those along it act at c + share × (r − c); twist: as if at r."""
     if len(twist) == 1:
         return twist
     about = centre[0] * rub[1] - centre[1] * rub[0]
@@ -200,7 +204,7 @@ def _torsion_of(twist, rub, centre, share):
 
 
 def reach_of(joints, point, side, centre, like):
-    """What says how a point moves when block a (side 0) or b (side 1) turns: in 2D its levers, in 3D its arm [m]."""
+    """Return the levers (2D) or the arm [m] (3D) of a point about the centroid of block a (side 0) or b (side 1)."""
     if len(like) == 2:
         return load_levers(joints.levers, point, side, like)
     return tuple(joints.points[point, k] - centre[k] for k in range(3))
@@ -258,7 +262,7 @@ def _torque_at(reach, force, normal_part, tangent_parts):
 
 
 def load_mobility(mobilities, row, like):
-    """Inverse inertia of a block along the axes of the world, row by row: one number in 2D, three by three in 3D."""
+    """Load the inverse inertia of a block along the world axes, row by row: one number in 2D, three by three in 3D."""
     if len(like) == 2:
         return ((mobilities[row, 0],),)
     return tuple(tuple(mobilities[row, 3 * k : 3 * k + 3]) for k in range(3))
@@ -276,7 +280,7 @@ def _load_mobility(mobilities, row, like):
 
 
 def spun(mobility, torque):
-    """Change of spin by an angular impulse: mobility × torque."""
+    """Compute the change of spin by an angular impulse: mobility × torque."""
     return tuple(dot(row, torque) for row in mobility)
 
 

@@ -1,4 +1,5 @@
-"""Which parts touch or may soon touch: bounding boxes swept in 2D, then separating axes; in 3D boxes in uniform cells.
+"""Search for neighbours: parts that touch or may soon touch. Boxes are swept in 2D, then separating axes; in 3D boxes
+in uniform cells.
 
 In the plane faces are found. For two convex polygons the axis of largest separation is the normal of an edge; the joint
 is that edge and the most antiparallel edge of the other polygon (Gottschalk, Lin and Manocha 1996).
@@ -15,7 +16,7 @@ from dem_cli.core.kernels.jit import inline, kernel
 
 @inline
 def _separation(corners, i, j, t0, t1):
-    """Distance of polygon t from the line of edge (i, j), negative where it lies behind."""
+    """Compute the distance of polygon t from the line of edge (i, j), negative where it lies behind."""
     tx, ty = corners[j, 0] - corners[i, 0], corners[j, 1] - corners[i, 1]
     length = math.sqrt(tx * tx + ty * ty)
     nx, ny = ty / length, -tx / length
@@ -28,7 +29,7 @@ def _separation(corners, i, j, t0, t1):
 
 @inline
 def _deepest_edge(corners, s0, s1, t0, t1):
-    """Largest separation of polygon t from an edge of polygon s, and that edge."""
+    """Find the edge of polygon s from which polygon t has the largest separation, and that separation."""
     best, best_edge = -math.inf, s0
     for i in range(s0, s1):
         separation = _separation(corners, i, i + 1 if i + 1 < s1 else s0, t0, t1)
@@ -39,7 +40,7 @@ def _deepest_edge(corners, s0, s1, t0, t1):
 
 @inline
 def _opposite_edge(corners, i, j, t0, t1):
-    """Edge of polygon t whose outward normal points most against that of edge (i, j)."""
+    """Find the edge of polygon t whose outward normal points most against that of edge (i, j)."""
     tx, ty = corners[j, 0] - corners[i, 0], corners[j, 1] - corners[i, 1]
     best, best_edge = math.inf, t0
     for k in range(t0, t1):
@@ -53,7 +54,7 @@ def _opposite_edge(corners, i, j, t0, t1):
 
 @inline
 def _overlap(corners, i, j, k, m):
-    """Length over which edge (k, m) lies opposite to edge (i, j), along the latter."""
+    """Compute the length over which edge (k, m) lies opposite to edge (i, j), along the latter."""
     tx, ty = corners[j, 0] - corners[i, 0], corners[j, 1] - corners[i, 1]
     length = math.sqrt(tx * tx + ty * ty)
     low = ((corners[m, 0] - corners[i, 0]) * tx + (corners[m, 1] - corners[i, 1]) * ty) / length
@@ -63,7 +64,7 @@ def _overlap(corners, i, j, k, m):
 
 @inline
 def _keep(parts_out, edges_out, distance_out, first, count, a, b, i, k, separation):
-    """Writes a pair unless it was written since `first`; returns the new count."""
+    """Write a pair unless it was written since `first`; returns the new count."""
     for n in range(first, min(count, edges_out.shape[0])):
         if edges_out[n, 0] == i and edges_out[n, 1] == k:
             return count
@@ -76,7 +77,7 @@ def _keep(parts_out, edges_out, distance_out, first, count, a, b, i, k, separati
 
 @kernel
 def find_pairs(order, boxes, corners, part_starts, part_blocks, fixed, reach, parts_out, edges_out, distance_out):
-    """Pairs of faces of convex parts closer than `reach` [m].
+    """Find pairs of faces of convex parts closer than `reach` [m].
 
     order         parts sorted by the left side of their box, (n_parts,)
     boxes         (left, right, bottom, top) of each part [m], (n_parts, 4)
@@ -133,7 +134,7 @@ def find_pairs(order, boxes, corners, part_starts, part_blocks, fixed, reach, pa
 
 @kernel
 def place_corners(positions, orientations, corner_blocks, corner_arms, corners_out):
-    """World coordinates of all corners [m], (n_vertices, 2)."""
+    """Compute world coordinates of all corners [m], (n_vertices, 2)."""
     block, c, s = -1, 1.0, 0.0
     for i in range(corner_blocks.shape[0]):
         if corner_blocks[i] != block:
@@ -146,7 +147,7 @@ def place_corners(positions, orientations, corner_blocks, corner_arms, corners_o
 
 @inline
 def _cells(boxes, part, origin, per_cell, shape, axis, reach):
-    """First and last cell of a box along an axis."""
+    """Compute the first and last cell of a box along an axis."""
     low = math.floor((boxes[part, 0, axis] - reach - origin[axis]) * per_cell)
     high = math.floor((boxes[part, 1, axis] + reach - origin[axis]) * per_cell)
     return min(max(low, 0), shape[axis] - 1), min(max(high, 0), shape[axis] - 1)
@@ -154,7 +155,7 @@ def _cells(boxes, part, origin, per_cell, shape, axis, reach):
 
 @kernel
 def enter_cells(boxes, parts, origin, per_cell, shape, reach, cells_out, parts_out):
-    """Writes each of `parts` into all cells that its box, grown by `reach` [m], touches; returns how many entries.
+    """Enter each of `parts` into all cells that its box, grown by `reach` [m], touches; returns how many entries.
 
     boxes: lowest and highest corner of each part [m], (n_parts, 2, 3); cells have sides of 1 / per_cell [m], shape: how
     many there are along each axis. The number may exceed the room: call again with more.
@@ -176,7 +177,7 @@ def enter_cells(boxes, parts, origin, per_cell, shape, reach, cells_out, parts_o
 
 @inline
 def boxes_meet(boxes, p, q, reach):
-    """Whether two boxes come closer than `reach` [m] along every axis."""
+    """Test whether two boxes come closer than `reach` [m] along every axis."""
     for axis in range(3):
         if boxes[p, 0, axis] > boxes[q, 1, axis] + reach or boxes[q, 0, axis] > boxes[p, 1, axis] + reach:
             return False
@@ -185,7 +186,8 @@ def boxes_meet(boxes, p, q, reach):
 
 @kernel
 def pairs_in_cells(boxes, cells, parts, blocks, fixed, grid, reach, pairs_out):
-    """Pairs of parts of different blocks, not both fixed, whose boxes meet; entries sorted by cell. Returns how many.
+    """Find pairs of parts of different blocks, not both fixed, whose boxes meet; entries sorted by cell. Returns how
+    many.
 
     grid: (origin, per_cell, shape) as in `enter_cells`. The number may exceed the room: call again with more.
     """
@@ -214,7 +216,7 @@ def pairs_in_cells(boxes, cells, parts, blocks, fixed, grid, reach, pairs_out):
 
 @kernel
 def pairs_of_large(boxes, large, blocks, fixed, is_large, reach, pairs_out):
-    """Pairs of `large` parts with all others, as `pairs_in_cells`."""
+    """Find pairs of `large` parts with all others, as `pairs_in_cells`."""
     count = 0
     for p in large:
         for q in range(boxes.shape[0]):

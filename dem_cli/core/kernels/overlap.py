@@ -1,4 +1,4 @@
-"""What two convex faces have in common in a plane: the corners of the overlap, and the area that belongs to each."""
+"""Overlap of two convex faces in a plane: its corners, and the area that belongs to each."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _write(work, row, at, x, y, label):
 
 @inline
 def clip(work, n_a, n_b, size):
-    """Corners of the overlap of two convex polygons; returns how many.
+    """Compute the corners of the overlap of two convex polygons; returns how many.
 
     work: (5, room, 3) with rows 0: corners (x, y) of a, 1: of b, both counter-clockwise. Out, in row 2: corners of the
     overlap and what they are: k < n_b: corner k of b; n_b + i: corner i of a; n_b + n_a + i n_b + k: where edge i of a
@@ -67,7 +67,7 @@ def clip(work, n_a, n_b, size):
 
 @inline
 def area_of(work, count):
-    """Area, centroid and second moment about it of the polygon in row 2, counter-clockwise."""
+    """Compute area, centroid and second moment about it of the polygon in row 2, counter-clockwise."""
     x0, y0 = work[2, 0, 0], work[2, 0, 1]
     area, mx, my, polar = 0.0, 0.0, 0.0, 0.0
     for k in range(1, count - 1):
@@ -87,7 +87,8 @@ def area_of(work, count):
 
 @inline
 def mean_distance(work, count, x, y):
-    """Mean distance of the polygon in row 2, counter-clockwise, from a place within it: triangles in closed form.
+    """Compute the mean distance of the polygon in row 2, counter-clockwise, from a place within it: triangles in closed
+    form.
 
     A triangle with its apex there, its base at the distance h from u to v along it, has
     ∫ r dA = (h (v |v| − u |u|) + h³ (asinh v/h − asinh u/h)) / 6, |u| = √(h² + u²).
@@ -116,7 +117,7 @@ def _drop(work, k, count):
 
 @inline
 def simplify(work, count, gap):
-    """Leaves out corners of row 2 that coincide (crossings first), or lie on the line between their neighbours."""
+    """Remove corners of row 2 that coincide (crossings first), or lie on the line between their neighbours."""
     k = 0
     while count > 2 and k < count:
         m = k + 1 if k + 1 < count else 0
@@ -143,7 +144,7 @@ def simplify(work, count, gap):
 
 @inline
 def share_area(work, count, area, gx, gy, weights, first):
-    """Area that belongs to each corner of the polygon in row 2: half of both triangles with its centroid.
+    """Divide the area of the polygon in row 2 among its corners: half of both triangles with its centroid.
 
     Their sum is `area` and their centroid (gx, gy): those of the polygon before it was simplified.
     """
@@ -181,13 +182,13 @@ def _turn_at(work, i, k, j):
 
 @always_inline
 def fades_by(sine):
-    """How much of what is its own a corner of an outline hands to those beside it, by the sine of its turn [-]."""
+    """Share of its area that a corner of an outline hands to its neighbours, by the sine of its turn [-]."""
     return max(1.0 - sine / FADES, 0.0)
 
 
 @inline
 def fading_areas(work, count, area, gx, gy):
-    """Area of each corner of the polygon in row 2, into column SHARE of that row; rows 5 and 6 are its own.
+    """Compute the area of each corner of the polygon in row 2, into column SHARE of that row; rows 5 and 6 are its own.
 
     area, gx, gy: of the polygon before it was simplified; area and first moment of what is shared out are those.
     """
@@ -223,7 +224,7 @@ def fading_areas(work, count, area, gx, gy):
 
 @inline
 def _restore(work, count, area, gx, gy):
-    """Areas w in row 5 times 1 + λ0 + λ·r, so that their sum is `area` and their centroid (gx, gy)."""
+    """Scale areas w in row 5 by 1 + λ0 + λ·r, so that their sum is `area` and their centroid (gx, gy)."""
     s0, sx, sy, sxx, sxy, syy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(count):
         x, y, w = work[2, k, 0] - gx, work[2, k, 1] - gy, work[5, k, 0]
@@ -241,7 +242,7 @@ def _restore(work, count, area, gx, gy):
 
 @inline
 def tilted(s0, sx, sy, sxx, sxy, syy, area):
-    """Factor 1 + λ0 + λ·r, as (1 + λ0, λ), by which areas at places r add up to `area` about the origin.
+    """Solve for the factor 1 + λ0 + λ·r, as (1 + λ0, λ), by which areas at places r add up to `area` about the origin.
 
     Their moments so far: sums of w, w x, w y, w x², w x y, w y²: s0 (1 + λ0) + s·λ = area, s (1 + λ0) + S λ = 0.
     """
@@ -256,7 +257,7 @@ def tilted(s0, sx, sy, sxx, sxy, syy, area):
 
 @inline
 def held_inside(work, count, x, y):
-    """The place of the polygon in row 2, counter-clockwise, that is nearest to (x, y), and how far away it is."""
+    """Find the place of the polygon in row 2, counter-clockwise, that is nearest to (x, y), and its distance."""
     outside, nearest, nx, ny = False, math.inf, x, y
     for k in range(count):
         m = k + 1 if k + 1 < count else 0

@@ -1,4 +1,4 @@
-"""The loop over contact points whose geometry moves, 2D: gaps first, everything else only where blocks touch.
+"""Contact forces in moving geometry, 2D: gaps first, everything else only where blocks touch.
 
 Each end of a joint has a frame of its own. Frames and levers stay in registers: the arrays `frames`, `levers` and
 `points` of the joints are not kept up to date by it; `measure` does that where somebody wants to read them.
@@ -30,7 +30,7 @@ def make_planar_forces(
     strains: bool = False,
     elastic: bool = False,
 ) -> Callable:
-    """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
+    """Make the contact loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers.
     meets: points close and open without a loss of energy (`meeting`), in time histories.
@@ -42,7 +42,7 @@ def make_planar_forces(
 
     @inline
     def planar_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
-        """Adds the forces of all joints on their blocks to `forces`; returns the friction work [J]."""
+        """Add the forces of all joints on their blocks to `forces`; returns the friction work [J]."""
         blocks, starts, edges, scales = joints.blocks, joints.starts, geometry.edges, geometry.scales
         frames, levers = joints.frames, joints.levers
         gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure

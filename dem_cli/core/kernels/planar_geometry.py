@@ -28,7 +28,7 @@ NARROW = 1e-4  # of the shorter edge: overlaps of less than that length are none
 
 @always_inline
 def place_end(xa, xb, share, gap, ta, tb, corner_a, corner_b):
-    """Frame, levers and place of one end: from `share` 0.5 on a corner of b on the edge of a, else the reverse.
+    """Compute frame, levers and place of one end: from `share` 0.5 on a corner of b on the edge of a, else the reverse.
 
     share: of the normal of the edge of a in that of the end, `share_of`; gap: of the end [m]. Across the joint the
     place goes with the share from one edge to the other, so that the moment of the shear force does not jump either.
@@ -58,7 +58,7 @@ def place_end(xa, xb, share, gap, ta, tb, corner_a, corner_b):
 
 @always_inline
 def share_of(twice_inside, blend):
-    """Share of the normal of a at an end: 1 where the corner of b lies inside, 0 where that of a does.
+    """Compute the weight of the normal of a at an end: 1 where the corner of b lies inside, 0 where that of a does.
 
     twice_inside: how far the corner of b is inside [m], along a and along b, added up; blend: ¼ / (BLEND · edge).
     """
@@ -67,13 +67,13 @@ def share_of(twice_inside, blend):
 
 @always_inline
 def sharper(blend, ta, tb):
-    """`blend` of share_of for edges along ta and tb: as it is where these open like a hinge, else far larger."""
+    """Adapt `blend` of share_of to edges along ta and tb: as it is where these open like a hinge, else far larger."""
     return blend * (1.0 + STEEPER * max(abs(ta[0] * tb[1] - ta[1] * tb[0]) - FLAT, 0.0))
 
 
 @always_inline
 def refresh_lengths(scales, joint, a0, a1, b0, b1):
-    """Lengths of the two edges of blocks that deform, into the `scales` of their joint."""
+    """Update the lengths of the two edges of blocks that deform in the `scales` of their joint."""
     length_a = math.sqrt((a1[0] - a0[0]) ** 2 + (a1[1] - a0[1]) ** 2)
     scales[joint, 0], scales[joint, 1] = length_a, 1.0 / length_a
     scales[joint, 2] = 1.0 / math.sqrt((b1[0] - b0[0]) ** 2 + (b1[1] - b0[1]) ** 2)
@@ -81,7 +81,7 @@ def refresh_lengths(scales, joint, a0, a1, b0, b1):
 
 @always_inline
 def overlap_of(a0, a1, b0, b1, length_a, per_a, per_b, blend):
-    """The overlap of two edges: its length, none where it is narrow, the gaps of its ends, what `place_end` needs."""
+    """Overlap of two edges: its length, zero where it is narrow, the gaps of its ends, what `place_end` needs."""
     ta = ((a1[0] - a0[0]) * per_a, (a1[1] - a0[1]) * per_a)
     tb = ((b1[0] - b0[0]) * per_b, (b1[1] - b0[1]) * per_b)
     # How far the edge of b ends inside that of a, at both ends, along a and along b; then the clipped overlap.
@@ -101,13 +101,13 @@ def overlap_of(a0, a1, b0, b1, length_a, per_a, per_b, blend):
 
 @always_inline
 def _other_depth(inside, along, cotangent):
-    """Depth behind the next edge of a corner, from the depth behind this edge and the way along it from the corner."""
+    """Depth of a corner behind the next edge, from the depth behind this edge and the way along it from the corner."""
     return max((along - inside * cotangent) / math.sqrt(1.0 + cotangent * cotangent), 0.0)
 
 
 @always_inline
 def apart(overlap, gap_low, gap_high, a0, a1, b0, b1, tb, scales, joint):
-    """Whether two edges have nothing to do with each other: no overlap, or deeper inside than they overlap.
+    """Test whether two edges do not touch: no overlap, or deeper inside than they overlap.
 
     Where two corners are inside each other two pairs of edges could push them apart, and the one with the smaller
     sum of squares of both depths does: one of the two whatever the direction, and as the elastic energies are the
@@ -134,7 +134,7 @@ def apart(overlap, gap_low, gap_high, a0, a1, b0, b1, tb, scales, joint):
 
 @inline
 def _write_end(joints, point, end):
-    """Into the arrays of the joints."""
+    """Write frame, levers and place of an end into the arrays of the joints."""
     frame, levers_a, levers_b, place = end
     frames, levers, points = joints.frames, joints.levers, joints.points
     frames[point, 0], frames[point, 1] = frame[0]
@@ -145,7 +145,7 @@ def _write_end(joints, point, end):
 
 @kernel
 def measure(joints, geometry, contacts, bodies):
-    """Frames, arms and gaps of all points from the corners of the blocks, for detection and records."""
+    """Compute frames, arms and gaps of all points from the corners of the blocks, for detection and records."""
     edges, scales = geometry.edges, geometry.scales
     gaps, normals, stale = contacts.gaps, contacts.normal, contacts.stale
     for number in range(joints.blocks.shape[0]):

@@ -1,4 +1,4 @@
-"""The loop over contact points of joints with more than two points, 2D: joints with a profile, bonded joints.
+"""Contact forces of joints with more than two points in moving geometry, 2D: joints with a profile, bonded joints.
 
 Block b carries a convex chain of vertices on its side of the joint, block a is flat: the non-coplanar joint of thesis
 7.2.3 as geometry. The ends of the joint are corners of b on the edge of a, or corners of a on a side of the chain, as
@@ -28,26 +28,26 @@ from dem_cli.core.kernels.vec import axpy, compose, load, scale, sliding
 
 @always_inline
 def _vertex(b1, tb, place, rise):
-    """Vertex of the chain, `place` [m] from corner b1 along the edge of b, `rise` [m] above it (into b)."""
+    """Compute a vertex of the chain, `place` [m] from corner b1 along the edge of b, `rise` [m] above it (into b)."""
     return b1[0] - place * tb[0] - rise * tb[1], b1[1] - place * tb[1] + rise * tb[0]
 
 
 @always_inline
 def _side(tb, slope):
-    """Direction of a side of the chain, as tb is that of the edge of b."""
+    """Compute the direction of a side of the chain, as tb is that of the edge of b."""
     unit = 1.0 / math.sqrt(1.0 + slope * slope)
     return unit * (tb[0] + slope * tb[1]), unit * (tb[1] - slope * tb[0])
 
 
 @always_inline
 def _outside(point, on_line, t):
-    """Distance of a point to a line with direction t, positive on its outer side [m]."""
+    """Compute the distance of a point from a line with direction t, positive on its outer side [m]."""
     return (point[0] - on_line[0]) * t[1] - (point[1] - on_line[1]) * t[0]
 
 
 @always_inline
 def _along(start, end, t):
-    """Way from one point to another along a direction t [m]."""
+    """Compute the distance from one point to another along a direction t [m]."""
     return (end[0] - start[0]) * t[0] + (end[1] - start[1]) * t[1]
 
 
@@ -70,7 +70,7 @@ def make_profiled_forces(
     bends: bool = False,
     elastic: bool = False,
 ) -> Callable:
-    """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
+    """Make the contact loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     keeps: frames and levers of the points that touch are kept up to date, for dampers. places: instead of forces, the
     loop keeps gaps, frames, levers and points up to date, for detection and records. rigid, strains: as in
@@ -81,7 +81,7 @@ def make_profiled_forces(
 
     @inline
     def profiled_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
-        """Adds the forces of all joints on their blocks to `forces`; returns the work lost [J]."""
+        """Add the forces of all joints on their blocks to `forces`; returns the work lost [J]."""
         blocks, starts, edges, scales, profile = (
             joints.blocks, joints.starts, geometry.edges, geometry.scales, geometry.profile
         )  # fmt: skip
@@ -246,7 +246,7 @@ def make_profiled_forces(
 
 @inline
 def _no_law(gap, slide, shear, kn, ks, parameters, joint, memory, point):
-    """Never called: points are placed, not pressed."""
+    """Return no force: a law for loops that only place points."""
     return 0.0, shear, False
 
 

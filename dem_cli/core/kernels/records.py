@@ -1,4 +1,4 @@
-"""The arrays that the kernels work on, each with its meaning, unit and shape.
+"""Records of arrays that the kernels work on, each with its meaning, unit and shape.
 
 n_dof = d + r + m: d translations, r rotations, then m modes by which a block deforms (m = 0: rigid blocks). Time is the
 solver's: seconds in dynamics, one unit per step in quasi-static runs (with fictitious masses).
@@ -16,7 +16,7 @@ NO_MODES = np.zeros((0, 0))
 
 
 class Bodies(NamedTuple):
-    """Changing state of the blocks."""
+    """State of the blocks that changes: positions, velocities, forces."""
 
     positions: np.ndarray  # centroids [m], (n_blocks, d)
     orientations: np.ndarray  # angles [rad], (n_blocks, 1); in space rotation vectors, (n_blocks, 3), that add up where
@@ -87,7 +87,7 @@ class MovingJoints(NamedTuple):
         return np.repeat(np.arange(len(self.blocks)), np.diff(self.starts))
 
     def kept(self) -> MovingJoints:
-        """Joints with a copy of their own of what changes as blocks move in space: stiffness, torsion, outlines."""
+        """Copy what changes as blocks move in space: stiffness, torsion, outlines."""
         names = ("kn", "ks", "torsion", "after", "fans", "faint", "back")
         return self._replace(**{name: getattr(self, name).copy() for name in names})
 
@@ -97,7 +97,7 @@ Joints = MovingJoints | FixedJoints
 
 
 class PlanarGeometry(NamedTuple):
-    """What the two edges of each joint are in the plane, row by row as `Joints`; all of it constant but `sunk`."""
+    """Geometry of the two edges of each joint in the plane, row by row as `Joints`; constant but for `sunk`."""
 
     keys: np.ndarray  # the two faces (model.topology), by which a joint is known again, (n_joints, 2)
     features: np.ndarray  # place of each point among those of its joint, by which it is known again, (n_points,)
@@ -109,15 +109,15 @@ class PlanarGeometry(NamedTuple):
 
     @property
     def faces(self) -> np.ndarray:
-        """The two faces of each joint (model.topology), (n_joints, 2)."""
+        """Two faces of each joint (model.topology), (n_joints, 2)."""
         return self.keys
 
     def settled(self) -> PlanarGeometry:
-        """What is still asked for when points stay where they were placed: all of it."""
+        """Return what is used when points stay where they were placed: the whole record."""
         return self
 
     def kept(self) -> PlanarGeometry:
-        """The same with a copy of what changes."""
+        """Return the record with a copy of the arrays that change."""
         return self._replace(sunk=self.sunk.copy())
 
 
@@ -136,7 +136,7 @@ class Polyhedra(NamedTuple):
 
 
 class SpatialGeometry(NamedTuple):
-    """Where the parts of each joint in space met, row by row as `Joints`; the geometry of the start.
+    """Geometry of joints in space as they were found, row by row as `Joints`; fixed geometry.
 
     All points of a joint lie in one plane, across its normal.
     """
@@ -152,15 +152,15 @@ class SpatialGeometry(NamedTuple):
 
     @property
     def faces(self) -> np.ndarray:
-        """The two faces of each joint (model.topology), (n_joints, 2)."""
+        """Two faces of each joint (model.topology), (n_joints, 2)."""
         return self.keys
 
     def settled(self) -> SpatialGeometry:
-        """What is still asked for when points stay where they were placed; these are then with the joints."""
+        """Return what is used when points stay where they were placed; these are then with the joints."""
         return self._replace(axes=np.zeros((0, 9)), places=np.zeros((0, 3)), gaps=np.zeros(0))
 
     def kept(self) -> SpatialGeometry:
-        """The same with a copy of what changes: nothing."""
+        """Return the record itself: nothing of it changes."""
         return self
 
 
@@ -168,7 +168,7 @@ FACES, RIM_OF_A, RIM_OF_B, EDGES = 0, 1, 2, 3  # of SpatialGeometry.kinds
 
 
 class SpatialMotion(NamedTuple):
-    """What the contact points of blocks that move in space are, row by row as `Joints`.
+    """Geometry of contact points of blocks that move in space, row by row as `Joints`.
 
     A joint has room for more points than there are now: a slot without a point has no stiffness. Renewal (renewal.py)
     changes what a slot holds; what goes on being a point keeps its slot.
@@ -210,11 +210,11 @@ class SpatialMotion(NamedTuple):
     heirs: np.ndarray  # and the slot that is nearest to each new one, (room,)
 
     def settled(self) -> SpatialMotion:
-        """What is still asked for when points stay where they were placed: all of it."""
+        """Return what is used when points stay where they were placed: the whole record."""
         return self
 
     def kept(self) -> SpatialMotion:
-        """The same with a copy of what changes."""
+        """Return the record with a copy of the arrays that change."""
         changing = ("features", "markers", "types", "corners", "shares", "spans", "arms")
         unmeasured = np.full_like(self.apart, np.nan)
         return self._replace(apart=unmeasured, **{name: getattr(self, name).copy() for name in changing})
@@ -224,7 +224,7 @@ CORNER_OF_B, CORNER_OF_A, CROSSING, FIXED_TO_B = 0, 1, 2, 3  # of SpatialMotion.
 
 
 class Contacts(NamedTuple):
-    """Changing state of the contact points."""
+    """State of the contact points that changes: forces, slip, memory."""
 
     gaps: np.ndarray  # positive open [m], (n_points,)
     shear: np.ndarray  # shear force on b along the tangents [N], (n_points, d - 1)

@@ -1,7 +1,9 @@
-"""Renewal of the contact points of joints in space that move: what goes on keeps its slot, what is new finds memory.
+"""Renewal of the contact points of joints in space that move: points that continue keep their slot, new ones get
+memory.
 
 Elastic slip and overlap are what a point remembers: where its area changes its forces go with it, and the energy that
-is made or lost by that is booked (Contacts.exchanged). A new point has the traction of the nearest one before.
+is made or lost by that is added to the energy balance (Contacts.exchanged). A new point has the traction of the nearest
+one before.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ MOST_LEFT = 32  # ... so many numbers at most
 
 @always_inline
 def marks_of(geometry, bodies, joint, a):
-    """Two corners of face b as block a sees them."""
+    """Compute two corners of face b as block a sees them."""
     face = geometry.faces[joint, 1]
     first = geometry.face_starts[face]
     half = (geometry.face_starts[face + 1] - first) // 2
@@ -40,7 +42,7 @@ def marks_of(geometry, bodies, joint, a):
 
 @always_inline
 def is_due(geometry, bodies, joint, a):
-    """Whether one block has moved along or turned against the other since the joint was renewed."""
+    """Test whether one block has moved along or turned against the other since the joint was renewed."""
     one, two = marks_of(geometry, bodies, joint, a)
     m = geometry.markers
     far = MOVED * geometry.scales[joint, SIZE]
@@ -51,7 +53,9 @@ def is_due(geometry, bodies, joint, a):
 
 @always_inline
 def _energy(joints, contacts, point, whole):
-    """In the springs of a point [J]. whole: it has its share of a pressure that is integrated over the face."""
+    """Compute the elastic energy in the springs of a point [J]. whole: it has its share of a pressure that is
+    integrated over the face.
+    """
     if joints.kn[point] == 0.0:
         return 0.0
     normal, along = contacts.normal[point], contacts.shear[point, 0] ** 2 + contacts.shear[point, 1] ** 2
@@ -62,7 +66,7 @@ def _energy(joints, contacts, point, whole):
 
 @always_inline
 def _place_of(bodies, b, kind, ends, row, share, arm):
-    """About where a point is, in a slot or found. kind, ends[row], share, arm: as SpatialMotion has them."""
+    """Estimate the place of a point, in a slot or found. kind, ends[row], share, arm: as SpatialMotion has them."""
     if kind == FIXED_TO_B:
         return axpy(1.0, carried3(bodies, b, arm), row3(bodies.positions, b))
     start = row3(bodies.corners, ends[row, 0])
@@ -73,7 +77,7 @@ def _place_of(bodies, b, kind, ends, row, share, arm):
 
 @always_inline
 def _put(geometry, vertices, point, k):
-    """What a slot holds from now on."""
+    """Store a found point in a slot."""
     found, labels, numbers = geometry.found, geometry.labels, geometry.numbers
     geometry.features[point], geometry.types[point] = labels[k, 0], labels[k, 1]
     for m in range(5):
@@ -90,7 +94,7 @@ def _put(geometry, vertices, point, k):
 
 @always_inline
 def _resize(joints, contacts, geometry, joint, point, area):
-    """Stiffness of a point by its area; forces go with it."""
+    """Scale the stiffness of a point to its area; forces go with it."""
     kn, ks = area * geometry.scales[joint, KN], area * geometry.scales[joint, KS]
     if joints.kn[point] > 0.0:
         contacts.normal[point] *= kn / joints.kn[point]
@@ -101,7 +105,7 @@ def _resize(joints, contacts, geometry, joint, point, area):
 
 @always_inline
 def _forget(joints, contacts, geometry, point):
-    """A slot without a point."""
+    """Clear a slot that has no point any more."""
     geometry.features[point], joints.kn[point], joints.ks[point] = NONE, 0.0, 0.0
     contacts.normal[point], contacts.gaps[point], contacts.slip[point], contacts.closure[point] = 0.0, 0.0, 0.0, 0.0
     contacts.shear[point, 0], contacts.shear[point, 1] = 0.0, 0.0
@@ -111,7 +115,7 @@ def _forget(joints, contacts, geometry, point):
 
 @always_inline
 def _look_up(joints, geometry, bodies, joint, count, b):
-    """For each found point its slot, into `taken`, and for new ones the nearest slot before, into `heirs`."""
+    """Find the slot of each found point, into `taken`, and for new ones the nearest slot before, into `heirs`."""
     first, last, numbers = joints.starts[joint], joints.starts[joint + 1], geometry.numbers
     for k in range(count):
         geometry.taken[k], geometry.heirs[k] = NONE, NONE
@@ -138,7 +142,7 @@ def _look_up(joints, geometry, bodies, joint, count, b):
 
 @always_inline
 def _bequeath(joints, contacts, geometry, bodies, joint, k, frame, remembers):
-    """What a new point gets from the nearest one: tractions over stiffness, slip, closure, memory of the law.
+    """Copy to a new point from the nearest one: tractions over stiffness, slip, closure, memory of the law.
 
     Forces are those of the last step, so that the gap by which it has closed since then belongs to this one.
     """
@@ -158,7 +162,7 @@ def _bequeath(joints, contacts, geometry, bodies, joint, k, frame, remembers):
 
 @always_inline
 def _gap_of(joints, geometry, bodies, joint, point, frame):
-    """Where the blocks are now."""
+    """Compute the gap of a point where the blocks are now [m]."""
     a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
     _, gap, place = feature_of(geometry, bodies, joint, point, a, b, frame)
     return on_cap(geometry, bodies, joint, point, gap, place, frame)[0]
@@ -166,7 +170,7 @@ def _gap_of(joints, geometry, bodies, joint, point, frame):
 
 @always_inline
 def _settle(joints, contacts, geometry, bodies, joint, point, k, frame, remembers, bonded, fresh):
-    """A new point in its slot: its own gap, and what the nearest one left it."""
+    """Set up a new point in its slot: its own gap, and what the nearest one left it."""
     numbers = geometry.numbers
     _put(geometry, bodies.corners, point, k)
     _resize(joints, contacts, geometry, joint, point, numbers[k, 0])
@@ -188,7 +192,7 @@ def _settle(joints, contacts, geometry, bodies, joint, point, k, frame, remember
 
 @always_inline
 def _press_again(joints, contacts, geometry, bodies, joint, frame, along):
-    """Normal forces of all points of an elastic face by the pressure on the outline that it has now."""
+    """Compute normal forces of all points of an elastic face by the pressure on its present outline."""
     a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
     for point in range(joints.starts[joint], joints.starts[joint + 1]):
         if joints.kn[point] > 0.0:
@@ -203,7 +207,7 @@ def _press_again(joints, contacts, geometry, bodies, joint, frame, along):
 
 @always_inline
 def _found(geometry, bodies, joint, pair, frame, along, room):
-    """The contact points that there are now: how many."""
+    """Find the present contact points of a joint; returns how many."""
     out = (geometry.work, geometry.found, geometry.labels, geometry.numbers)
     if geometry.kinds[joint] == FACES:
         return in_faces(geometry, bodies, joint, pair, frame, along, out)
@@ -214,7 +218,7 @@ def _found(geometry, bodies, joint, pair, frame, along, room):
 
 @kernel
 def _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
-    """Finds the contact points of a joint anew; returns how many there are.
+    """Find the contact points of a joint anew; returns how many there are.
 
     remembers: numbers of memory that belong to the law; fresh: nothing acts yet, and no energy is made.
     """
@@ -263,6 +267,8 @@ def _renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
 
 @always_inline
 def renew(joint, joints, geometry, contacts, bodies, remembers, bonded, fresh):
-    """As _renew, for the loops that are made for a law: the cache knows these by all that they name, and a kernel has
-    another name in each process. A plain function has not. One kind of integer: it is compiled once."""
+    """Find the contact points of a joint anew, for the loops that are made for a law; returns how many. The cache knows
+    these loops by all that they name, and a kernel has another name in each process; a plain function has not. One
+    kind of integer: it is compiled once.
+    """
     return _renew(np.int64(joint), joints, geometry, contacts, bodies, remembers, bonded, fresh)

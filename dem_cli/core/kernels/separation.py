@@ -1,4 +1,4 @@
-"""How far two convex polyhedra are apart: separating axes of faces and of pairs of edges that support each other.
+"""Distance between two convex polyhedra: separating axes of faces and of pairs of edges that support each other.
 
 The difference of two convex bodies has three sorts of facets: faces of the one, faces of the other, and pairs of edges
 whose arcs on the sphere of normals cross (Gregorius 2013). They are apart as far as the furthest of these facets.
@@ -24,32 +24,32 @@ NO_EDGE = -1
 
 @inline
 def cross3(a, b):
-    """Cross product."""
+    """Compute the cross product of two vectors in space."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 @inline
 def minus3(a, b):
-    """Difference."""
+    """Subtract two vectors in space."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 @inline
 def unit3(a):
-    """The same direction, of length one."""
+    """Normalise a vector in space to length one."""
     length = math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
     return (a[0] / length, a[1] / length, a[2] / length)
 
 
 @inline
 def row3(array, row):
-    """A row as a tuple."""
+    """Load a row of three numbers as a tuple."""
     return (array[row, 0], array[row, 1], array[row, 2])
 
 
 @inline
 def height_over(solids, face, part):
-    """Least height of the corners of a part over the plane of a face, negative where one lies behind."""
+    """Compute the least height of the corners of a part over the plane of a face, negative where one lies behind."""
     n = row3(solids.normals, face)
     x = row3(solids.corners, solids.face_corners[solids.face_starts[face]])
     offset = dot(x, n)
@@ -62,7 +62,7 @@ def height_over(solids, face, part):
 
 @inline
 def _highest_face(solids, part, other, tie):
-    """The face of a part over which the other one is highest, and how high."""
+    """Find the face of a part over which the other one is highest, and how high."""
     best, best_face = -math.inf, solids.part_faces[part]
     for face in range(solids.part_faces[part], solids.part_faces[part + 1]):
         height = height_over(solids, face, other)
@@ -73,7 +73,7 @@ def _highest_face(solids, part, other, tie):
 
 @inline
 def _highest_edges(solids, a, b):
-    """The two edges between which the parts are furthest apart, how far, and the axis from a to b."""
+    """Find the two edges between which the parts are furthest apart, their distance, and the axis from a to b."""
     best, best_a, best_b, axis = -math.inf, NO_EDGE, NO_EDGE, (0.0, 0.0, 0.0)
     for i in range(solids.part_edges[a], solids.part_edges[a + 1]):
         n1, n2 = row3(solids.normals, solids.edges[i, 2]), row3(solids.normals, solids.edges[i, 3])
@@ -106,7 +106,7 @@ def _highest_edges(solids, a, b):
 
 @inline
 def _off_axis(solids, face, axis, sign):
-    """Square of the difference between the normal of a face and sign × axis: of small angles, the angle squared."""
+    """Squared difference between the normal of a face and sign × axis: of small angles, the angle squared."""
     n = row3(solids.normals, face)
     off = (n[0] - sign * axis[0], n[1] - sign * axis[1], n[2] - sign * axis[2])
     return dot(off, off)
@@ -136,7 +136,7 @@ def _most_along(solids, part, axis, sign):
 
 @inline
 def _seen_along(solids, face, axis, t1, t2, turned, work, row):
-    """Corners of a face as the axis sees them; `turned`: the other way round. Returns how many."""
+    """Project the corners of a face along the axis; `turned`: the other way round. Returns how many."""
     first, count = solids.face_starts[face], solids.face_starts[face + 1] - solids.face_starts[face]
     for k in range(count):
         corner = row3(solids.corners, solids.face_corners[first + (count - 1 - k if turned else k)])
@@ -146,7 +146,7 @@ def _seen_along(solids, face, axis, t1, t2, turned, work, row):
 
 @inline
 def _level(solids, face, axis, place):
-    """Height along the axis at which the plane of a face lies over a place."""
+    """Compute the height along the axis at which the plane of a face lies over a place."""
     n = row3(solids.normals, face)
     corner = row3(solids.corners, solids.face_corners[solids.face_starts[face]])
     return dot(minus3(corner, place), n) / dot(axis, n)
@@ -154,7 +154,7 @@ def _level(solids, face, axis, place):
 
 @inline
 def _carries(solids, face_a, face_b, axis, t1, t2, separation, size, work):
-    """Area that two faces share, seen along the axis, as far as it is as near as the parts are [m²].
+    """Compute the area that two faces share, seen along the axis, as far as it is as near as the parts are [m²].
 
     Less where the gap at its centroid is wider than their separation: by half where it is as much wider as the parts
     overlap, or as LEVEL of the size.
@@ -173,7 +173,8 @@ def _carries(solids, face_a, face_b, axis, t1, t2, separation, size, work):
 
 @inline
 def _facing(solids, a, b, axis, separation, work):
-    """The faces of two parts that look at each other along an axis, and what others of them share beside these [m²].
+    """Find the faces of two parts that look at each other along an axis, and areas that other faces share beside these
+    [m²].
 
     Those most along it. Where a part has others that are nearly so, as beside the kink of a bed, the two of them that
     share the most: a part that lies over one side of the kink has nothing on the other side of it, however it turns.
@@ -203,7 +204,8 @@ def _facing(solids, a, b, axis, separation, work):
 
 @inline
 def separate(solids, a, b, reach):
-    """Separation of parts a and b [m], the axis from a to b, and the two edges that say it, NO_EDGE: a face does.
+    """Compute the separation of parts a and b [m], the axis from a to b, and the two edges that set it; NO_EDGE: a face
+    does.
 
     Not sought any further where it is found to be larger than `reach`.
     """
@@ -229,7 +231,8 @@ def separate(solids, a, b, reach):
 
 @kernel
 def separations(solids, pairs, reach, work, separation_out, faces_out, left_out):
-    """Separation [m] of pairs of parts (n, 2), and their two faces that look at each other along the axis, (n, 2).
+    """Compute separations [m] of pairs of parts (n, 2), and their two faces that look at each other along the axis, (n,
+    2).
 
     left_out: area that they share with other faces as well, across a kink of almost nothing [m²], (n,).
     work: room for the corners of two faces, as `clip` has it.

@@ -1,4 +1,4 @@
-"""n steps of a time history in one compiled call: contact forces, ground motion, dampers, kick, drift.
+"""Time steps of a time history in one compiled call: contact forces, ground motion, dampers, velocities, positions.
 
 Leapfrog with real masses, in the frame that moves with the base: positions and forces at whole steps, velocities half
 a step behind. The ledger sums what each group of forces really did, force × mean velocity. In space torques kick with
@@ -60,7 +60,7 @@ def _kick(
     velocities, forces, unbalanced, dead_loads, inverse_masses, masses, mobilities, old, drags, pulled, base, damp,
     rate, dt, like, like_rotation,
 ):  # fmt: skip
-    """Velocities from forces, loads and the acceleration of the base; leaves the old ones and the drag of each.
+    """Update velocities from forces, loads and the acceleration of the base; leaves the old ones and the drag of each.
 
     rate: mass-proportional damping, −rate·m·v at the mean velocity of the step. damp: local damping. Without branches.
     """
@@ -87,7 +87,8 @@ def _book(
     velocities, forces, unbalanced, inverse_masses, masses, shape, turns, old, pulled, drags, rate, dt, ledger,
     like_rotation,
 ):  # fmt: skip
-    """Work of one step into the ledger; turns `old` velocities into means and `pulled` ones into those of the end.
+    """Add the work of one step to the ledger; turns `old` velocities into means and `pulled` ones into those of the
+    end.
 
     pulled: velocities before the dashpots, whose mean with the old ones is what mass damping acted on; what came
     after them is impulse of the dashpots. Supports have their own velocity, and what they push is their work.
@@ -124,7 +125,7 @@ def _book(
 
 @inline
 def _sample(step, dt, bodies, shape, watch, like_rotation):
-    """Place, mean velocity and acceleration of the watched blocks at this step."""
+    """Sample place, mean velocity and acceleration of the watched blocks at this step."""
     positions, velocities, means, samples = bodies.positions, bodies.velocities, bodies.means, watch.samples
     d = positions.shape[1]
     n_dof = d + len(like_rotation)
@@ -142,7 +143,7 @@ def _sample(step, dt, bodies, shape, watch, like_rotation):
 
 @inline
 def _sample_links(step, links, watch):
-    """State of the links of every kind at this step."""
+    """Sample the state of the links of every kind at this step."""
     row, place = step // watch.every, 0
     for link in literal_unroll(links):
         state = link.state
@@ -154,7 +155,7 @@ def _sample_links(step, links, watch):
 
 @always_inline
 def _turned(bodies, block, arms, point, k, like):
-    """Component k of the arm of a point, turned with its block [m]."""
+    """Compute component k of the arm of a point, turned with its block [m]."""
     turns = bodies.turns
     if len(like) == 2:
         i, j = np.uint64(k), np.uint64(1 - k)
@@ -168,7 +169,7 @@ def _turned(bodies, block, arms, point, k, like):
 
 @always_inline
 def _swept(bodies, block, arms, point, k, like):
-    """Component k of ω × r [m/s]."""
+    """Compute component k of the velocity ω × r of a point [m/s]."""
     means, d, n_dof = bodies.means, len(like), bodies.velocities.shape[1]
     first = block * np.uint64(n_dof) + np.uint64(d)
     if d == 2:
@@ -181,7 +182,7 @@ def _swept(bodies, block, arms, point, k, like):
 
 @always_inline
 def _component(kind, first, last, k, step, bodies, gauges, like, like_rotation):
-    """Component k of what a gauge reads now: the mean over its points."""
+    """Compute component k of the present reading of a gauge: the mean over its points."""
     arms, n_dof, found, column = gauges.arms, bodies.velocities.shape[1], 0.0, np.uint64(k)
     for number in range(first, last):
         point = np.uint64(number)
@@ -201,7 +202,7 @@ def _component(kind, first, last, k, step, bodies, gauges, like, like_rotation):
 
 @always_inline
 def _mean_of_gauge(g, step, bodies, gauges, like, like_rotation):
-    """What a gauge of points, of several blocks or of a length reads now."""
+    """Compute the present reading of a gauge of points, of several blocks or of a length."""
     component, kind = gauges.components[g], gauges.kinds[g]
     first, last = gauges.starts[g], gauges.starts[g + 1]
     if component >= 0:
@@ -215,7 +216,7 @@ def _mean_of_gauge(g, step, bodies, gauges, like, like_rotation):
 
 @always_inline
 def _read_gauges(step, bodies, gauges, like, like_rotation):
-    """The extremes of all gauges with those of this step."""
+    """Update the extremes of all gauges by their readings at this step."""
     found = gauges.found
     for number in range(found.shape[0]):
         g = np.uint64(number)
@@ -236,7 +237,7 @@ def _read_gauges(step, bodies, gauges, like, like_rotation):
 
 @always_inline
 def _tally_gaps(gaps, tally):
-    """The least gap so far: four at a time, as a minimum waits for the one before."""
+    """Update the least gap so far: four at a time, as a minimum waits for the one before."""
     n = gaps.shape[0]
     a = b = c = d = tally[LEAST_GAP]
     for i in range(0, n - 3, 4):
@@ -255,7 +256,7 @@ def make_shake(
     strains: bool = False,
     bends: bool = False,
 ) -> Callable:
-    """The compiled loop for one contact loop and the links that there are.
+    """Make the compiled time-history loop for one contact loop and the links of the model.
 
     damped: with dashpots or Maxwell elements in the joints; strains: blocks deform; bends: in quadratic modes as well.
     """
@@ -266,7 +267,9 @@ def make_shake(
         first, n_steps, dt, bodies, shape, joints, geometry, contacts, links, loads, control, ledger, ground,
         dampers, watch, like, like_rotation,
     ):  # fmt: skip
-        """Steps first, first + 1 ... of a stretch, up to n_steps; returns those done (fewer when detection is due)."""
+        """Advance by up to n_steps from step `first` of a stretch; returns the steps done (fewer when detection is
+        due).
+        """
         velocities, forces, unbalanced = bodies.velocities, bodies.forces, bodies.unbalanced
         means, drags, pulled, strained = bodies.means, bodies.drags, bodies.pulled, dampers.strained
         dead_loads, inverse_masses, scales = loads.dead, loads.inverse_masses, loads.force_scales

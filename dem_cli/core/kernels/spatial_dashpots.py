@@ -1,4 +1,4 @@
-"""Dashpots of joints in space: what one turn of an impulse needs, packed point by point, so that sweeps read little.
+"""Dashpots of joints in space: gains of impulses, packed point by point, so that sweeps read little.
 
 An impulse J gives up S (w₀ + w + C⁻¹ J), S = (C⁻¹ + K)⁻¹ along the axes of the world, K rates by impulses at the point,
 C half of damping × step; it goes no lower than its bound by moving along S n. A point that slips has S = s n nᵀ. While
@@ -44,7 +44,7 @@ GAINS = {2: PLANAR_WIDTH, 3: WIDTH}  # columns by dimension
 
 
 def meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
-    """States and gains of all points before the kick, and the impulses of the step before; how many points have met."""
+    """Determine states and gains of all points before the kick, and the impulses before; returns how many have met."""
     found = meet_in_plane if len(like) == 2 else meet_in_space
     return found(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation)
 
@@ -58,7 +58,7 @@ def _meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rota
 
 
 def resist(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation):
-    """The impulses of all dashpots on the velocities after the kick, from those of the step before.
+    """Apply the impulses of all dashpots to the velocities after the kick, starting from those of the step before.
 
     turns: pairs of sweeps, to and fro, at most. One over all joints is enough where the step before is a good guess;
     those after it are over joints of blocks that the one before has stirred (`stir`), beginning where points have met.
@@ -90,7 +90,7 @@ def _rates_by_impulses(arm, mobility):
 
 @always_inline
 def put_gains(rows, row, normal, arms, masses, mobilities, viscous, slips, more=()):
-    """Gain and inverse viscosity of a point, columns GAIN, EVENLY and ACROSS.
+    """Store gain and inverse viscosity of a point, columns GAIN, EVENLY and ACROSS.
 
     viscous: C, half of damping × step across and along the joint [kg]; masses: sum of both inverse masses. more: rates
     by impulses of blocks that deform, beside those of rigid ones.
@@ -127,7 +127,7 @@ def put_gains(rows, row, normal, arms, masses, mobilities, viscous, slips, more=
 
 @always_inline
 def _gained(rows, row, vector):
-    """S × vector."""
+    """Multiply the gain S of a row by a vector."""
     x, y, z = load(rows, row, GAIN, vector)
     yy, yz, zz = load(rows, row, GAIN + 3, vector)
     return dot((x, y, z), vector), dot((y, yy, yz), vector), dot((z, yz, zz), vector)
@@ -135,7 +135,7 @@ def _gained(rows, row, vector):
 
 @always_inline
 def given_up(rows, row, normal, impulse, rate):
-    """The impulse of a point after it gave up its error at the rate w₀ + w; across the joint not below its bound."""
+    """Relax the impulse of a point by its error at the rate w₀ + w; across the joint not below its bound."""
     error = axpy(rows[row, ACROSS] * dot(normal, impulse), normal, axpy(rows[row, EVENLY], impulse, rate))
     free = axpy(-1.0, _gained(rows, row, error), impulse)
     short = rows[row, LEAST] - dot(normal, free)
@@ -147,7 +147,7 @@ def given_up(rows, row, normal, impulse, rate):
 
 @always_inline
 def _goes_on(joints, contacts, dampers, joint):
-    """Whether the rows of a joint are those of its points now: geometry is held, the same points touch, stick and slip.
+    """Test whether the rows of a joint are still valid: geometry is held, the same points touch, stick and slip.
 
     Points that have met in the step before act for all of this one.
     """
@@ -164,13 +164,13 @@ def _goes_on(joints, contacts, dampers, joint):
 
 @always_inline
 def _touching(held):
-    """How many points of a joint touch, whether its geometry is held or was just measured."""
+    """Return the number of touching points of a joint, whether its geometry is held or was just measured."""
     return held if held >= 0 else -1 - held
 
 
 @inline
 def _make_room(joints, dampers):
-    """Begins with the first row again, for all joints, where those that may come now have no room any more."""
+    """Restart the rows of all joints from the first, where new ones have no room any more."""
     needed = dampers.packed[-1]
     for joint in range(joints.held.shape[0]):
         needed += _touching(joints.held[joint])
@@ -180,7 +180,7 @@ def _make_room(joints, dampers):
 
 @always_inline
 def _first_row(joints, dampers, joint):
-    """Where the rows of a joint go that are made anew: where they were, or where nothing is yet."""
+    """Find the first row for a joint whose rows are made anew: where they were, or behind all others."""
     packed, n = dampers.packed, _touching(joints.held[joint])
     if n > dampers.rooms[joint]:
         packed[joint], dampers.rooms[joint] = packed[-1], n
@@ -190,7 +190,7 @@ def _first_row(joints, dampers, joint):
 
 @always_inline
 def _push_on(joints, contacts, bodies, dampers, dt, joint, a, b, like):
-    """Impulses of rows that go on, as far as they may, onto the blocks."""
+    """Apply impulses of rows that go on, as far as they may, to the blocks."""
     rows, holders, slips, seen = dampers.gains, dampers.holders, contacts.slip, dampers.slips
     pushed, turned = scale(0.0, like), scale(0.0, like)
     for number in range(dampers.packed[joint], dampers.lasts[joint]):
@@ -215,7 +215,9 @@ def _push_on(joints, contacts, bodies, dampers, dt, joint, a, b, like):
 
 @inline
 def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
-    """As dashpots.meet_in_plane; rows of joint j from packed[j] up to lasts[j]. Those that go on are not made anew."""
+    """Determine states and gains of all points in space before the kick; rows of joint j from packed[j] up to lasts[j].
+    Those that go on are not made anew.
+    """
     blocks, starts, kns, kss, frames = joints.blocks, joints.starts, joints.kn, joints.ks, joints.frames
     normals, memory, slips = contacts.normal, contacts.memory, contacts.slip
     positions, velocities = bodies.positions, bodies.velocities
@@ -303,7 +305,7 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, l
 
 @inline
 def _sweep_in_space(joints, contacts, bodies, inverse_masses, dampers, swept, n, turn, backwards, like, like_rotation):
-    """One sweep over the impulses of n joints; backwards: which are then kept with the points, too."""
+    """Relax the impulses of n joints in space in one sweep; backwards: which are then kept with the points, too."""
     blocks, frames, positions, velocities = joints.blocks, joints.frames, bodies.positions, bodies.velocities
     rows, packed, holders, memory, first = (
         dampers.gains, dampers.packed, dampers.holders, contacts.memory, dampers.first
@@ -353,7 +355,7 @@ turns_in_space = make_turns(_sweep_in_space)
 
 @inline
 def resist_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation):
-    """As `resist`; bodies.means: velocities before the step."""
+    """Apply the impulses of all dashpots in space to the velocities; bodies.means: velocities before the step."""
     if dampers.active[-1] == 0:
         return
     velocities, pushes, old = bodies.velocities, dampers.pushes, bodies.means

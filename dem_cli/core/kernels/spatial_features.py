@@ -1,4 +1,5 @@
-"""Contact points of blocks that move in space: place, normal and gap of a corner on a face and of two edges that cross.
+"""Geometry of contact points of blocks that move in space: place, normal and gap of a corner on a face and of crossing
+edges.
 
 Each feature has its own normal: a corner that of the face on which it lies, a crossing that of both its edges. Where
 one feature becomes another normals would jump by the angle between the blocks: within a band along the rim of a face
@@ -27,19 +28,19 @@ NONE = -1
 
 @always_inline
 def turned3(turns, block, v):
-    """A vector of the frame of a block in space."""
+    """Turn a vector from the frame of a block into world axes."""
     return along(load_frame(turns, block, v), v)
 
 
 @always_inline
 def turned_back3(turns, block, v):
-    """A vector of space in the frame of a block."""
+    """Turn a vector from world axes into the frame of a block."""
     return combined(load_frame(turns, block, v), v)
 
 
 @always_inline
 def carried3(bodies, block, arm):
-    """An arm of the undeformed block, from its centroid, where the block is now."""
+    """Move an arm of the undeformed block, from its centroid, with the block to where it is now."""
     if bodies.gradients.shape[0] > 0:
         return turned3(bodies.gradients, block, arm)
     return turned3(bodies.turns, block, arm)
@@ -47,7 +48,7 @@ def carried3(bodies, block, arm):
 
 @always_inline
 def carried_back3(bodies, block, arm):
-    """What `carried3` made it of."""
+    """Move an arm back to the undeformed block; the inverse of `carried3`."""
     if bodies.covectors.shape[0] > 0:
         return turned_back3(bodies.covectors, block, arm)
     return turned_back3(bodies.turns, block, arm)
@@ -55,7 +56,7 @@ def carried_back3(bodies, block, arm):
 
 @always_inline
 def _normal3(bodies, block, normal):
-    """Unit normal of a face of the undeformed block where the block is now."""
+    """Compute the present unit normal of a face of the undeformed block."""
     if bodies.covectors.shape[0] > 0:
         return near_unit3(turned3(bodies.covectors, block, normal))
     return turned3(bodies.turns, block, normal)
@@ -63,19 +64,19 @@ def _normal3(bodies, block, normal):
 
 @always_inline
 def mixed(x, v, w):
-    """x of one vector and the rest of another one."""
+    """Blend two vectors: x of one and the rest of the other."""
     return axpy(x, v, axpy(-x, w, w))
 
 
 @always_inline
 def _share(way, band):
-    """0 at a rim, 1 from the end of the band on."""
+    """Compute the share of a normal by the way from a rim: 0 there, 1 from the end of the band on."""
     return min(max(way / band, 0.0), 1.0)
 
 
 @always_inline
 def near_unit3(v):
-    """A vector of about length one, of length one; by a series where it hardly differs: no root, no division."""
+    """Normalise a vector of about length one; by a series where it hardly differs: no root, no division."""
     short = 1.0 - dot(v, v)
     if abs(short) > 1e-3:
         return unit3(v)
@@ -85,14 +86,15 @@ def near_unit3(v):
 
 @always_inline
 def _half_way(own, other, along):
-    """Half way from a normal to what is left of another one across a unit vector."""
+    """Compute the direction half way from a normal to what is left of another one across a unit vector."""
     over = near_unit3(axpy(-dot(other, along), along, other))
     return (0.5 * (own[0] + over[0]), 0.5 * (own[1] + over[1]), 0.5 * (own[2] + over[2]))
 
 
 @always_inline
 def _over_rim(vertices, ends, span, corner, outwards, own, other, band):
-    """Share of a corner's own normal by its way from a side of the rim, and the normal where it is over that side.
+    """Compute the share of a corner's own normal by its way from a side of the rim, and the normal where it is over
+    that side.
 
     ends, span: corners of the side, and one over its length [1/m].
     """
@@ -105,7 +107,8 @@ def _over_rim(vertices, ends, span, corner, outwards, own, other, band):
 
 @always_inline
 def corner_normal(vertices, sides, spans, point, corner, outwards, own, other, middle, band):
-    """Normal of a corner on a face. own: of the face, from a to b; other: of the face of the corner's block, likewise.
+    """Compute the normal of a corner on a face. own: of the face, from a to b; other: of the face of the corner's
+    block, likewise.
 
     outwards: own, as the face has it; sides[point, 1:5]: corners of up to two sides of its rim that are near, spans:
     one over their lengths [1/m].
@@ -125,7 +128,7 @@ def corner_normal(vertices, sides, spans, point, corner, outwards, own, other, m
 
 @always_inline
 def _bilinear(first, second, inside, over_first, over_second, over_both):
-    """Normal between two rims: inside of both, over one of them, over both."""
+    """Interpolate the normal between two rims: inside of both, over one of them, over both."""
     if first >= 1.0 and second >= 1.0:
         return inside
     return near_unit3(mixed(second, mixed(first, inside, over_first), mixed(first, over_second, over_both)))
@@ -133,7 +136,7 @@ def _bilinear(first, second, inside, over_first, over_second, over_both):
 
 @always_inline
 def crossing_in_faces(vertices, ends, point, share, normal_a, normal_b, middle, band):
-    """Normal, gap and place of two edges that cross where two faces look at each other.
+    """Compute normal, gap and place of two edges that cross where two faces look at each other.
 
     Nearly parallel ones have the normal of the joint, at the place along the edge of a where they began to cross.
     """
@@ -217,7 +220,7 @@ def feature_of(geometry, bodies, joint, point, a, b, frame):
 
 @always_inline
 def height_inside(geometry, vertices, face, outwards, corner, slack):
-    """Whether a point lies over a face, but for `slack` [m²], and how high [m]."""
+    """Test whether a point lies over a face, but for `slack` [m²], and compute its height [m]."""
     first = geometry.face_starts[face]
     count = geometry.face_starts[face + 1] - first
     height = dot(minus3(corner, row3(vertices, geometry.face_corners[first])), outwards)
@@ -231,7 +234,9 @@ def height_inside(geometry, vertices, face, outwards, corner, slack):
 
 @always_inline
 def on_cap(geometry, bodies, joint, point, gap, place, frame):
-    """Gap and place of a point where b has a cap: its outline lies higher, its inner points carry over face a alone."""
+    """Correct gap and place of a point where b has a cap: its outline lies higher, its inner points carry over face a
+    alone.
+    """
     rise = geometry.rises[joint]
     if rise == 0.0:
         return gap, place
@@ -243,7 +248,7 @@ def on_cap(geometry, bodies, joint, point, gap, place, frame):
 
 @always_inline
 def frame_of(geometry, bodies, joint, a, b):
-    """Normals from a to b (of the face of a, of that of b, half way) and the direction of shear, in space."""
+    """Compute normals from a to b (of the face of a, of that of b, half way) and the direction of shear, in space."""
     n, t = geometry.normals, row3(geometry.tangents, joint)
     normal_a = _normal3(bodies, a, (n[joint, 0], n[joint, 1], n[joint, 2]))
     normal_b = _normal3(bodies, b, (-n[joint, 3], -n[joint, 4], -n[joint, 5]))
@@ -255,7 +260,7 @@ def frame_of(geometry, bodies, joint, a, b):
 
 @always_inline
 def tangents3(normal, along):
-    """Two unit vectors across a normal: what is left of `along`, and normal × that."""
+    """Compute two unit vectors across a normal: what is left of `along`, and normal × that."""
     first = axpy(-dot(normal, along), normal, along)
     if dot(first, first) < 1e-6:  # along the normal: any will do
         first = cross3(normal, (1.0, 0.0, 0.0) if abs(normal[0]) < 0.7 else (0.0, 1.0, 0.0))

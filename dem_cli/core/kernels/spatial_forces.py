@@ -1,4 +1,4 @@
-"""The loop over joints in space whose geometry moves: points renewed where they are due, gaps first, then forces.
+"""Contact forces in moving geometry, 3D: points renewed where they are due, gaps first, then forces.
 
 Each point has the normal of its feature (spatial_features.py); shear is counted along a direction fixed in block a, so
 that two blocks that turn together keep their forces. In time histories a joint holds normals and places of its points
@@ -31,7 +31,8 @@ SHIFT = 1e-5  # of its size: by so much its blocks may move against each other m
 
 @kernel
 def _measure(joint, joints, geometry, contacts, bodies, remembers, bonded, capped, holds):
-    """Frames, places and gaps of the points of a joint where its blocks are now; renewed first where that is due.
+    """Compute frames, places and gaps of the points of a joint where its blocks are now; renewed first where that is
+    due.
 
     capped: joints may have caps; holds: what is found may be held from now on.
     """
@@ -66,13 +67,15 @@ def _measure(joint, joints, geometry, contacts, bodies, remembers, bonded, cappe
 
 @always_inline
 def measure(joint, joints, geometry, contacts, bodies, remembers, bonded, capped, holds):
-    """As _measure, for the loops that are made for a law (renewal.renew says why)."""
+    """Compute frames, places and gaps of the points of a joint, for the loops that are made for a law (renewal.renew
+    says why).
+    """
     _measure(np.int64(joint), joints, geometry, contacts, bodies, remembers, bonded, capped, holds)
 
 
 @always_inline
 def _keeps(geometry, bodies, joint, a, b):
-    """Whether the blocks of a joint have hardly moved against each other, nor turned, since it was measured."""
+    """Test whether the blocks of a joint have hardly moved against each other, nor turned, since it was measured."""
     if bodies.turned[a] != 0 or bodies.turned[b] != 0:
         return False
     apart = minus3(row3(bodies.positions, a), row3(bodies.positions, b))
@@ -108,7 +111,7 @@ def make_spatial_forces(
     strains: bool = False,
     elastic: bool = False,
 ) -> Callable:
-    """The loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
+    """Make the contact loop for one law (laws/law.py), as a plain function that `make_advance` closes over.
 
     meets: in time histories; geometry is held there while blocks hardly move. rigid: as in planar_forces.py.
     remembers: numbers of a point's memory that belong to the law. capped: joints may have caps. strains: blocks deform
@@ -121,7 +124,7 @@ def make_spatial_forces(
 
     @inline
     def spatial_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
-        """Adds the forces of all joints on their blocks to `forces`; returns the friction work [J]."""
+        """Add the forces of all joints on their blocks to `forces`; returns the friction work [J]."""
         blocks, starts, stiffness = joints.blocks, joints.starts, joints.kn
         frames, places = joints.frames, joints.points
         gaps, normals, closures = contacts.gaps, contacts.normal, contacts.closure
@@ -224,14 +227,14 @@ def make_spatial_forces(
 
 @kernel
 def renew_fresh(joints, geometry, contacts, bodies):
-    """Contact points of joints that have none yet: nothing acts on them."""
+    """Find contact points of joints that have none yet: nothing acts on them."""
     for joint in range(joints.blocks.shape[0]):
         renew(joint, joints, geometry, contacts, bodies, 0, False, True)
 
 
 @kernel
 def measure_spatial(joints, geometry, contacts, bodies):
-    """Frames, levers, places and gaps of all points where the blocks are now, for detection and records."""
+    """Compute frames, levers, places and gaps of all points where the blocks are now, for detection and records."""
     frames, levers, places = joints.frames, joints.levers, joints.points
     for joint in range(joints.blocks.shape[0]):
         a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]

@@ -1,4 +1,4 @@
-"""Contact points between two convex polyhedra where they are: overlaps of faces, edges and corners on faces, edges.
+"""Contact points between two convex polyhedra as they lie: overlaps of faces, edges and corners on faces, edges.
 
 Faces within 30° of the separating axis and of each other make a face joint: the points are the corners of their overlap
 across the bisector of both normals, which does not know which of the two comes first. Otherwise an edge or a corner of
@@ -33,13 +33,13 @@ def _put(array, row, vector):
 
 @inline
 def face_origin(solids, face):
-    """First corner of a face."""
+    """Return the first corner of a face."""
     return row3(solids.corners, solids.face_corners[solids.face_starts[face]])
 
 
 @inline
 def first_tangent(solids, face, normal):
-    """Unit vector across the normal, along the first edge of a face: fixed in its part, whatever overlaps there."""
+    """A unit vector across the normal, along the first edge of a face: fixed in its part, whatever overlaps there."""
     first = solids.face_starts[face]
     start = row3(solids.corners, solids.face_corners[first])
     along = minus3(row3(solids.corners, solids.face_corners[first + 1]), start)
@@ -48,7 +48,7 @@ def first_tangent(solids, face, normal):
 
 @inline
 def _flatten(solids, face, origin, t1, t2, work, row, turned):
-    """Corners of a face in the plane of t1 and t2; `turned`: the other way round. Returns how many."""
+    """Project corners of a face into the plane of t1 and t2; `turned`: the other way round. Returns how many."""
     first, count = solids.face_starts[face], solids.face_starts[face + 1] - solids.face_starts[face]
     for k in range(count):
         place = count - 1 - k if turned else k
@@ -59,7 +59,7 @@ def _flatten(solids, face, origin, t1, t2, work, row, turned):
 
 @inline
 def _inside(work, row, count, x, y):
-    """Distance of a point from the nearest side of a polygon, counter-clockwise; negative: outside."""
+    """Compute the distance of a point from the nearest side of a polygon, counter-clockwise; negative: outside."""
     least = math.inf
     for k in range(count):
         m = k + 1 if k + 1 < count else 0
@@ -71,7 +71,7 @@ def _inside(work, row, count, x, y):
 
 @inline
 def _edge_direction(solids, face, k):
-    """Edge k of a face, from its corner k to the next one."""
+    """Compute edge k of a face, from its corner k to the next one."""
     first, count = solids.face_starts[face], solids.face_starts[face + 1] - solids.face_starts[face]
     m = k + 1 if k + 1 < count else 0
     start = row3(solids.corners, solids.face_corners[first + k])
@@ -80,7 +80,7 @@ def _edge_direction(solids, face, k):
 
 @inline
 def _own_normal(solids, face_a, face_b, n_a, n_b, what, middle):
-    """Normal of a point by what makes it: of the face that a corner lies on, of two edges that cross."""
+    """Choose the normal of a point by what makes it: of the face that a corner lies on, of two edges that cross."""
     if what < n_b:
         return row3(solids.normals, face_a)
     if what < n_b + n_a:
@@ -103,7 +103,8 @@ def _own_normal(solids, face_a, face_b, n_a, n_b, what, middle):
 
 @inline
 def _face_joint(solids, face_a, face_b, size, work, out, joint, first):
-    """Corners of the overlap of two faces that look at each other, with their areas; returns how many, 0: none.
+    """Compute the corners of the overlap of two faces that look at each other, with their areas; returns how many, or
+    0.
 
     Gaps are the distances of both planes. All points are put into the plane across the normal of the joint: that of
     both faces where they are parallel, else that of the points that are nearest.
@@ -168,14 +169,14 @@ def _face_joint(solids, face_a, face_b, size, work, out, joint, first):
 
 @inline
 def _slopes(normal, middle, t1, t2):
-    """Rise of a plane along t1 and t2, over the plane across `middle`."""
+    """Compute the rise of a plane along t1 and t2, over the plane across `middle`."""
     upright = dot(normal, middle)
     return -dot(normal, t1) / upright, -dot(normal, t2) / upright
 
 
 @inline
 def _at_the_nearest(solids, face_a, face_b, counts, points, middle, out):
-    """Mean normal and place of the points that are nearest, and what is there: 2: one crossing of two edges, else 0.
+    """Compute mean normal and place of the nearest points, and what is there: 2: one crossing of two edges, else 0.
 
     counts: corners of both faces; points: (largest gap, first, how many).
     """
@@ -195,7 +196,7 @@ def _at_the_nearest(solids, face_a, face_b, counts, points, middle, out):
 
 @inline
 def _edge_margin(work, counts, arm, t1, t2, touches):
-    """How far the nearest place lies within one of both faces; a crossing of two edges is at the rim of both."""
+    """Compute the margin of the nearest place within the rim of either face; infinite at a crossing of two edges."""
     if touches == 2:
         return math.inf
     x, y = dot(arm, t1), dot(arm, t2)
@@ -212,7 +213,7 @@ def _put_frame(frames, joint, normal, t1):
 
 @inline
 def _support(solids, part, normal, band):
-    """Two corners of a part that lie furthest against a normal, within `band` of the furthest; twice the same: one."""
+    """Find two corners of a part furthest against a normal, within `band` of the furthest; twice the same: one."""
     lowest = math.inf
     for k in range(solids.part_starts[part], solids.part_starts[part + 1]):
         lowest = min(lowest, dot(row3(solids.corners, k), normal))
@@ -231,7 +232,8 @@ def _support(solids, part, normal, band):
 
 @inline
 def _rim_joint(solids, face, other, sign, size, work, out, joint, first):
-    """A corner of the part `other` on a face, or both ends of its edge there; returns how many points, 0: it is beside.
+    """Compute contacts of a corner of the part `other` on a face, or both ends of its edge; returns how many points, or
+    0.
 
     sign: 1 where the face belongs to a, −1 where it belongs to b.
     """
@@ -293,14 +295,14 @@ def _nearest_on(p, u, q, v):
 
 @inline
 def _segment(solids, edge):
-    """Start of an edge and the way to its end."""
+    """Return the start of an edge and the way to its end."""
     start = row3(solids.corners, solids.edges[edge, 0])
     return start, minus3(row3(solids.corners, solids.edges[edge, 1]), start)
 
 
 @inline
 def _nearest_edges(solids, a, b):
-    """The two edges of parts a and b that are nearest to each other."""
+    """Find the two edges of parts a and b that are nearest to each other."""
     best, edge_a, edge_b = math.inf, solids.part_edges[a], solids.part_edges[b]
     for i in range(solids.part_edges[a], solids.part_edges[a + 1]):
         p, u = _segment(solids, i)
@@ -315,7 +317,7 @@ def _nearest_edges(solids, a, b):
 
 @inline
 def _edge_joint(solids, face_a, edges, axis, crossing, out, joint, first):
-    """One point where two edges are nearest; a pair that does not say how far the parts are apart does not touch."""
+    """Compute the contact point where two edges are nearest; without a crossing it has no margin."""
     frames, places, weights, gaps, features, measures = out
     p, u = _segment(solids, edges[0])
     q, v = _segment(solids, edges[1])
@@ -338,7 +340,7 @@ def _edge_joint(solids, face_a, edges, axis, crossing, out, joint, first):
 
 @inline
 def describe_pair(solids, a, b, pair_of_faces, work, out, joint, first):
-    """Contact points of one pair of parts; returns the kind of joint and how many points."""
+    """Compute contact points of one pair of parts; returns the kind of joint and how many points."""
     face_a, face_b = pair_of_faces
     size = min(solids.sizes[a], solids.sizes[b])
     _, axis, edge_a, edge_b = separate(solids, a, b, math.inf)
@@ -364,7 +366,7 @@ def describe_pair(solids, a, b, pair_of_faces, work, out, joint, first):
 
 @kernel
 def describe(solids, parts, faces, starts, work, out, kinds_out, counts_out):
-    """Contact points of all pairs of parts with their faces, (n, 2) each.
+    """Compute contact points of all pairs of parts with their faces, (n, 2) each.
 
     starts: room for the points of each, (n + 1,): as many as both faces have corners; work: (5, room of one pair, 3).
     out: frames (n, 9); and in the room of each pair places (3 columns), weights [m² or 1], gaps [m], features; measures

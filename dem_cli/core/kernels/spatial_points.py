@@ -64,7 +64,7 @@ LEFT_OVER = 0.05  # of its area that a point keeps at least where areas are tilt
 
 @always_inline
 def _flatten(geometry, vertices, face, origin, t1, t2, work, row, turned):
-    """Corners of a face in the plane of t1 and t2; `turned`: the other way round. Returns how many."""
+    """Project corners of a face into the plane of t1 and t2; `turned`: the other way round. Returns how many."""
     first = geometry.face_starts[face]
     count = geometry.face_starts[face + 1] - first
     for k in range(count):
@@ -76,7 +76,7 @@ def _flatten(geometry, vertices, face, origin, t1, t2, work, row, turned):
 
 @always_inline
 def _corner_of(geometry, face, k, turned):
-    """Vertex of corner k of a face that was flattened."""
+    """Return the vertex of corner k of a face that was flattened."""
     first = geometry.face_starts[face]
     count = geometry.face_starts[face + 1] - first
     k %= count
@@ -85,7 +85,7 @@ def _corner_of(geometry, face, k, turned):
 
 @always_inline
 def torsion_now(geometry, joint, count):
-    """As FixedJoints.torsion, of the points that were just found."""
+    """Compute the torsion share of the points that were just found, as FixedJoints.torsion."""
     kind, work = geometry.kinds[joint], geometry.work
     if kind != FACES:
         return OF_LINE if kind != EDGES and count == 2 else 1.0
@@ -102,7 +102,7 @@ def torsion_now(geometry, joint, count):
 
 @always_inline
 def _perimeter(work, count):
-    """Perimeter of the overlap in row 2 of `work` [m]."""
+    """Compute the perimeter of the overlap in row 2 of `work` [m]."""
     around = 0.0
     for k in range(count):
         m = k + 1 if k + 1 < count else 0
@@ -143,7 +143,7 @@ def _clipped(geometry, vertices, joint, frame, along, work):
 
 @always_inline
 def _sides_near(geometry, vertices, face, outwards, corner, width, out):
-    """Up to two sides of the rim of a face that are nearer to a corner than `width`: their ends, into out[1:5]."""
+    """Find up to two sides of the rim of a face that are nearer to a corner than `width`: their ends, into out[1:5]."""
     first = geometry.face_starts[face]
     count = geometry.face_starts[face + 1] - first
     nearest, second = width, width
@@ -164,26 +164,26 @@ def _sides_near(geometry, vertices, face, outwards, corner, width, out):
 
 @always_inline
 def _edge_key(start, end, first):
-    """Number of an edge of a part by its two corners, whichever comes first."""
+    """Number an edge of a part by its two corners, whichever comes first."""
     low, high = min(start, end) - first, max(start, end) - first
     return low % LOCAL * LOCAL + high % LOCAL
 
 
 @always_inline
 def _label_corner(of_a, corner, first):
-    """Feature of a corner of a part."""
+    """Number the feature of a corner of a part."""
     return (LOCAL if of_a else 0) + (corner - first) % LOCAL
 
 
 @always_inline
 def _label_crossing(a0, a1, b0, b1, first_a, first_b):
-    """Feature of two edges."""
+    """Number the feature of two crossing edges."""
     return 2 * LOCAL + _edge_key(a0, a1, first_a) * LOCAL * LOCAL + _edge_key(b0, b1, first_b)
 
 
 @always_inline
 def _describe(geometry, joint, k, work, found, labels):
-    """What corner k of the overlap in row 2 is: its corners into found[k], feature and type into labels[k]."""
+    """Identify corner k of the overlap in row 2: its corners into found[k], feature and type into labels[k]."""
     face_a, face_b = geometry.faces[joint, 0], geometry.faces[joint, 1]
     n_a = geometry.face_starts[face_a + 1] - geometry.face_starts[face_a]
     n_b = geometry.face_starts[face_b + 1] - geometry.face_starts[face_b]
@@ -208,7 +208,7 @@ def _describe(geometry, joint, k, work, found, labels):
 
 @always_inline
 def in_faces(geometry, bodies, joint, pair, frame, along, out):
-    """Points of a face joint: how many, into the arrays of `out`."""
+    """Find the points of a face joint, into the arrays of `out`; returns how many."""
     work, found, labels, numbers = out
     vertices = bodies.corners
     count, centre_area, centre, keep = _clipped(geometry, vertices, joint, frame, along, work)
@@ -251,7 +251,7 @@ def in_faces(geometry, bodies, joint, pair, frame, along, out):
 
 @always_inline
 def _with_area(geometry, bodies, joint, b, frame, along, count, overlap, out):
-    """Adds the points within the area of a joint; returns how many there are. overlap: centroid, area at least."""
+    """Add the points within the area of a joint; returns how many there are. overlap: centroid, area at least."""
     work, found, labels, numbers = out
     vertices, n_b, upwards = bodies.corners, frame[1], frame[2]
     t1, t2 = tangents3(upwards, along)
@@ -305,7 +305,7 @@ def _with_area(geometry, bodies, joint, b, frame, along, count, overlap, out):
 
 @always_inline
 def _with_cap(geometry, joint, count, found, labels, numbers):
-    """Adds the inner points of the cap of a joint; returns how many points there are."""
+    """Add the inner points of the cap of a joint; returns how many points there are."""
     first = geometry.cap_starts[joint]
     for k in range(first, geometry.cap_starts[joint + 1]):
         for m in range(5):
@@ -320,7 +320,7 @@ def _with_cap(geometry, joint, count, found, labels, numbers):
 
 @always_inline
 def on_rim(geometry, bodies, joint, frame, room, out):
-    """Points of a joint of a face and what of the other part lies on it: corners, and edges that cross its rim."""
+    """Find points of a joint of a face and what of the other part lies on it: corners, and edges that cross its rim."""
     _, found, labels, numbers = out
     vertices, scales = bodies.corners, geometry.scales
     on_a = geometry.kinds[joint] == RIM_OF_A
@@ -379,7 +379,7 @@ def on_rim(geometry, bodies, joint, frame, room, out):
 
 @always_inline
 def of_edges(geometry, joint, out):
-    """The point of a joint of two edges, if it has any."""
+    """Find the point of a joint of two edges, if it has any."""
     _, found, labels, numbers = out
     if geometry.edges[joint, 0] == NONE:
         return 0
@@ -396,7 +396,7 @@ def of_edges(geometry, joint, out):
 
 @always_inline
 def _overlap_anywhere(geometry, vertices, faces, normals, work):
-    """Whether two faces have anything in common, seen along the joint."""
+    """Test whether two faces overlap at all, seen along the joint."""
     face_a, face_b = faces[0], faces[1]
     middle = unit3(minus3(normals[0], normals[1]))
     t1, t2 = tangents3(middle, (0.6, 0.64, 0.48))
@@ -408,7 +408,7 @@ def _overlap_anywhere(geometry, vertices, faces, normals, work):
 
 @kernel
 def classify(solids, parts, faces, separations, work, kinds_out, edges_out):
-    """What joints of pairs of parts are now (n,), as SpatialMotion.kinds, and the edges that cross, as its `edges`.
+    """Classify joints of pairs of parts (n,), as SpatialMotion.kinds, and find the edges that cross, as its `edges`.
 
     Faces within 30° of the separating axis and of each other look at each other; else a face within 30° of it has what
     lies on it; else two edges cross. Parts inside each other always have something in common there.

@@ -25,7 +25,7 @@ CHANGE = 1e-30  # of |w|²: smaller changes of the midpoint, squared, are round-
 
 @always_inline
 def half_turn(spin, dt):
-    """The quaternion of a turn by spin × dt, over its scalar, without it: tan(|spin| dt/2)/|spin| × spin."""
+    """Compute the quaternion of a turn by spin × dt, over its scalar, without it: tan(|spin| dt/2)/|spin| × spin."""
     half = 0.5 * dt
     square = half * half * dot(spin, spin)
     if square > 1e-3:
@@ -56,7 +56,7 @@ def midpoint(spin, moments, dt):
 
 @always_inline
 def turn_further(orientations, row, turn):
-    """The quaternion of a row after the turn (1, turn) along the axes of the world; of length one."""
+    """Turn the quaternion of a row by (1, turn) along the world axes; of length one."""
     w, x, y, z = orientations[row, 0], orientations[row, 1], orientations[row, 2], orientations[row, 3]
     a, b, c = turn
     w, x, y, z = (
@@ -72,7 +72,7 @@ def turn_further(orientations, row, turn):
 
 @always_inline
 def note_turn(bodies, row):
-    """Notes whether a block has turned by more than HELD since this was last so."""
+    """Record whether a block has turned by more than HELD since this was last so."""
     now, then, change = bodies.orientations, bodies.poses, 0.0
     for k in range(4):
         change = max(change, abs(now[row, k] - then[row, k]))
@@ -85,7 +85,7 @@ def note_turn(bodies, row):
 
 @always_inline
 def turned(vector, turn):
-    """A vector after the turn of the quaternion (1, turn), along the axes of the world."""
+    """Turn a vector by the quaternion (1, turn), along the world axes."""
     x, y, z = vector
     a, b, c = turn
     p, q, r = b * z - c * y, c * x - a * z, a * y - b * x
@@ -99,7 +99,7 @@ def turned(vector, turn):
 
 @always_inline
 def store_turn(turns, row, orientations):
-    """The rotation matrix of the quaternion of a row, row by row."""
+    """Store the rotation matrix of the quaternion of a row, row by row."""
     w, x, y, z = orientations[row, 0], orientations[row, 1], orientations[row, 2], orientations[row, 3]
     turns[row, 0] = 1.0 - 2.0 * (y * y + z * z)
     turns[row, 1] = 2.0 * (x * y - w * z)
@@ -114,13 +114,13 @@ def store_turn(turns, row, orientations):
 
 @always_inline
 def along(axes, vector):
-    """Components of a vector along three axes."""
+    """Resolve a vector into components along three axes."""
     return (dot(axes[0], vector), dot(axes[1], vector), dot(axes[2], vector))
 
 
 @always_inline
 def principal_axes(turns, axes, row):
-    """Principal axes of a block in the world: three unit vectors."""
+    """Compute the principal axes of a block in the world: three unit vectors."""
     turn = load_frame(turns, row, (0.0, 0.0, 0.0))
     return (
         along(turn, (axes[row, 0], axes[row, 3], axes[row, 6])),
@@ -131,14 +131,14 @@ def principal_axes(turns, axes, row):
 
 @always_inline
 def combined(axes, parts):
-    """The vector with these components along three axes."""
+    """Compose a vector from components along three axes."""
     (ax, ay, az), (bx, by, bz), (cx, cy, cz), (p, q, r) = axes[0], axes[1], axes[2], parts
     return (p * ax + q * bx + r * cx, p * ay + q * by + r * cy, p * az + q * bz + r * cz)
 
 
 @always_inline
 def store_mobility(mobilities, row, axes, moments):
-    """Inverse tensor of inertia along the axes of the world, from principal axes and moments."""
+    """Store the inverse inertia tensor along the world axes, from principal axes and moments."""
     a, b, c = axes
     p, q, r = 1.0 / moments[0], 1.0 / moments[1], 1.0 / moments[2]
     mobilities[row, 0] = p * a[0] * a[0] + q * b[0] * b[0] + r * c[0] * c[0]
@@ -165,7 +165,7 @@ def _kick_in_space(velocities, unbalanced, drags, old, pulled, mobilities, keep,
 
 
 def kick_spins(velocities, unbalanced, drags, old, pulled, mobilities, keep, gain, row, like_rotation):
-    """Spins of a block after a step of torque, damped; in the plane they stand where all velocities do.
+    """Update the spins of a block by a step of torque, damped; in the plane they stand where all velocities do.
 
     keep: of the velocity before; gain: time over which torques act [s].
     """
@@ -199,7 +199,7 @@ def _powers_in_space(drained, dashpots, velocities, old, pulled, shape, turns, r
 
 
 def add_spin_powers(drained, dashpots, velocities, old, pulled, shape, turns, row, like_rotation):
-    """Adds what mass damping and dashpots took from the spin of a block; in the plane that is with the masses.
+    """Add the power that mass damping and dashpots took from the spin of a block; in the plane that is with the masses.
 
     drained: (velocity before + that after the kick) × inertia × mean velocity; dashpots: their impulse × mean velocity.
     """
@@ -227,7 +227,7 @@ def _rotation_vector(orientations, row):
 
 
 def rotation(orientations, row, like_rotation):
-    """The angle of a block, or the rotation vector of its quaternion, the shorter way round [rad]."""
+    """Compute the angle of a block, or the rotation vector of its quaternion, the shorter way round [rad]."""
     return (orientations[row, 0],) if len(like_rotation) == 1 else _rotation_vector(orientations, row)
 
 
@@ -256,7 +256,9 @@ def _gyrate(samples, sample, place, shape, turns, row):
 
 
 def add_gyration(samples, sample, place, shape, turns, row, like_rotation):
-    """Adds to the sampled angular acceleration of a block what it has without any torque: nothing in the plane."""
+    """Add to the sampled angular acceleration of a block its gyroscopic part without any torque: nothing in the
+    plane.
+    """
     if len(like_rotation) == 3:
         _gyrate(samples, sample, place, shape, turns, row)
 

@@ -12,7 +12,7 @@ from dem_cli.core.kernels.jit import always_inline, built_in, overload
 
 
 def load(array, row, start, like):
-    """array[row, start : start + len(like)] as a tuple."""
+    """Load array[row, start : start + len(like)] as a tuple."""
     return tuple(array[row, start + k] for k in range(len(like)))
 
 
@@ -26,7 +26,7 @@ def _load(array, row, start, like):
 
 
 def add_at(array, row, start, vector, sign):
-    """array[row, start:] += sign * vector."""
+    """Add a vector in place: array[row, start:] += sign * vector."""
     for k in range(len(vector)):
         array[row, start + k] += sign * vector[k]
 
@@ -56,7 +56,7 @@ def _add_at(array, row, start, vector, sign):
 
 
 def store(array, row, start, vector):
-    """array[row, start:] = vector."""
+    """Store a vector in array[row, start:]."""
     for k in range(len(vector)):
         array[row, start + k] = vector[k]
 
@@ -86,7 +86,7 @@ def _store(array, row, start, vector):
 
 
 def axpy(a, x, y):
-    """a * x + y."""
+    """Compute a * x + y for vectors."""
     return tuple(a * p + q for p, q in zip(x, y, strict=True))
 
 
@@ -100,7 +100,7 @@ def _axpy(a, x, y):
 
 
 def dot(x, y):
-    """Scalar product."""
+    """Compute the scalar product of two vectors."""
     return sum(p * q for p, q in zip(x, y, strict=True))
 
 
@@ -114,7 +114,7 @@ def _dot(x, y):
 
 
 def components(frame, vector):
-    """Components of a vector along the normal and along the tangents of a frame: a number and d − 1 numbers."""
+    """Resolve a vector along the normal and the tangents of a frame: a number and d − 1 numbers."""
     return dot(frame[0], vector), tuple(dot(tangent, vector) for tangent in frame[1:])
 
 
@@ -126,7 +126,7 @@ def _components(frame, vector):
 
 
 def compose(frame, normal_part, tangent_parts, start):
-    """start + normal_part × normal + tangent_parts × tangents."""
+    """Compute start + normal_part × normal + tangent_parts × tangents."""
     total = axpy(normal_part, frame[0], start)
     for part, tangent in zip(tangent_parts, frame[1:], strict=True):
         total = axpy(part, tangent, total)
@@ -145,7 +145,7 @@ def _compose(frame, normal_part, tangent_parts, start):
 
 
 def load_levers(levers, point, side, like):
-    """The d levers of a point about the centroid of block a (side 0) or b (side 1), each with r components.
+    """Load the d levers of a point about the centroid of block a (side 0) or b (side 1), each with r components.
 
     A lever is the moment of a unit force along one direction of the frame: arm × direction.
     """
@@ -166,7 +166,7 @@ def _load_levers(levers, point, side, like):
 
 
 def turn(levers, rotation):
-    """Motion of a point along the normal and the tangents when its block turns: lever · ω."""
+    """Compute the motion of a point along the normal and the tangents when its block turns: lever · ω."""
     return components(levers, rotation)
 
 
@@ -179,13 +179,13 @@ def _turn(levers, rotation):
 
 @always_inline
 def sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt):
-    """How far b slides along the tangents against a in a step at a point with these levers [m]."""
+    """Compute the slide of b against a along the tangents in a step at a point with these levers [m]."""
     slid_a, slid_b = turn(levers_a, spin_a)[1], turn(levers_b, spin_b)[1]
     return scale(dt, axpy(1.0, components(frame, relative)[1], axpy(-1.0, slid_a, slid_b)))
 
 
 def add_torques(levers, normal_part, tangent_parts, start):
-    """start + moment of a force given by its components along the frame."""
+    """Add to start the moment of a force given by its components along the frame."""
     return compose(levers, normal_part, tangent_parts, start)
 
 
@@ -195,7 +195,7 @@ def _add_torques(levers, normal_part, tangent_parts, start):
 
 
 def load_frame(frames, point, like):
-    """The frame of a point: d unit vectors, normal first. In 2D the tangent is the normal turned by +90°."""
+    """Load the frame of a point: d unit vectors, normal first. In 2D the tangent is the normal turned by +90°."""
     d = len(like)
     if d == 2:
         return ((frames[point, 0], frames[point, 1]), (-frames[point, 1], frames[point, 0]))
@@ -219,7 +219,7 @@ def _load_frame(frames, point, like):
 
 
 def scale(a, x):
-    """a * x."""
+    """Compute a * x for a vector."""
     return tuple(a * p for p in x)
 
 
@@ -233,7 +233,7 @@ def _scale(a, x):
 
 
 def norm(x):
-    """Length of a vector."""
+    """Compute the length of a vector."""
     return abs(x[0]) if len(x) == 1 else math.sqrt(dot(x, x))
 
 
@@ -246,11 +246,11 @@ def _norm(x):
 
 @built_in
 def in_a_row(array):
-    """All numbers of an array in C order, (n,), where they are."""
+    """View all numbers of an array in C order, (n,), where they are."""
     return array.reshape(-1)
 
 
 @built_in
 def shaped_as(array, like):
-    """The numbers of an array, where they are, in the shape of another one with as many."""
+    """View the numbers of an array, where they are, in the shape of another one with as many."""
     return array.reshape(like.shape)

@@ -3,7 +3,7 @@
     |s| ≤ N tan φ,   φ = JRC log10(JCS / σn) + φr,   φr ≤ φ ≤ φ_max
 
 σn = N / A is the stress of the point. The angle grows without end as the stress goes to zero: it is cut off, as is
-usual in rock mechanics, at 70° unless the case says otherwise.
+usual in rock mechanics, at 70° unless the table says otherwise.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from dem_cli.declarations import KeyProblem, Positive, parameter
 
 
 class BartonJoint(StiffJoint):
-    """[joints.*] with law = "barton"."""
+    """Joint table [joints.*] with law = "barton": friction that falls with the normal stress."""
 
     law: Literal["barton"] = "barton"
     jrc: float = parameter(
@@ -39,7 +39,7 @@ class BartonJoint(StiffJoint):
     )
 
     def check(self) -> None:
-        """The largest angle is at least the residual one."""
+        """Check that the largest friction angle is at least the residual one."""
         super().check()
         if self.largest_angle_deg < self.residual_angle_deg:
             raise KeyProblem(
@@ -57,7 +57,7 @@ class BartonJoint(StiffJoint):
 
 @inline
 def barton(gap, slide, shear, kn, ks, parameters, joint, memory, point):
-    """Contact point with friction that depends on its stress; columns: see `columns`."""
+    """Compute the forces of a contact point with friction that depends on its stress; columns: see `columns`."""
     if gap >= 0.0:
         return 0.0, scale(0.0, shear), True
     normal = -kn * gap
@@ -75,14 +75,16 @@ def barton(gap, slide, shear, kn, ks, parameters, joint, memory, point):
 
 
 def shear_limit(parameters, normal, memory, kn):
-    """N tan φ of the stress of each point [N]."""
+    """Compute the shear strength N tan φ at the stress of each point [N]."""
     stiffness, roughness, strength, residual, low, _, _ = parameters[:, :7].T
     stress = np.clip(normal * stiffness / kn, np.maximum(low, np.finfo(float).tiny), strength)
     return functions.tan(residual + roughness * functions.log10(strength / stress)) * normal
 
 
 def columns(table, kn):
-    """kn [Pa/m], JRC [rad], JCS [Pa], φr [rad], stress where φ is cut off [Pa], smallest and largest tan φ."""
+    """List the parameters: kn [Pa/m], JRC [rad], JCS [Pa], φr [rad], stress where φ is cut off [Pa], smallest and
+    largest tan φ.
+    """
     residual, largest = math.radians(table.residual_angle_deg), math.radians(table.largest_angle_deg)
     return (kn, math.radians(table.jrc), table.jcs, residual, table.low_stress, math.tan(residual), math.tan(largest))
 

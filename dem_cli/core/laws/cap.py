@@ -1,4 +1,5 @@
-"""Cap in compression of bonded joints: beyond fc the point is crushed, perfectly plastic, whatever its bond does.
+"""Compressive strength (cap) of bonded joints: beyond fc the point is crushed, perfectly plastic, whatever its bond
+does.
 
     N ≤ fc A,   the bond sees the gap + z
 
@@ -19,7 +20,8 @@ from dem_cli.declarations import KeyProblem
 
 
 def capped(law: Law, name: str, column: int) -> Law:
-    """The law of bonded points with a cap; column: of `parameters` in which fc [Pa] stands, behind those of the law.
+    """Add a compressive strength to a law of bonded points; column: of `parameters` in which fc [Pa] stands, behind
+    those of the law.
 
     The law has kn [Pa/m] as its first number, remembers in its first scalar that it was never bonded as 0, and opens
     at no other gap than zero. Source: the cap of Lourenço and Rots 1997, without hardening and cut off straight.
@@ -27,7 +29,7 @@ def capped(law: Law, name: str, column: int) -> Law:
     depth = law.scalars  # where the point remembers z [m]
 
     def most(parameters: np.ndarray, kn: np.ndarray) -> np.ndarray:
-        """fc A [N]."""
+        """Compute the compressive strength fc A [N]."""
         return parameters[:, column] * kn / parameters[:, 0]
 
     def with_cap(find: Callable) -> Callable:
@@ -38,7 +40,7 @@ def capped(law: Law, name: str, column: int) -> Law:
         return found
 
     def pressed(parameters, overlaps, memory, kn):
-        """Normal forces of capped points [N]: of the bond, at most fc A; crushed stone is not pulled."""
+        """Compute normal forces of capped points [N]: of the bond, at most fc A; crushed stone is not pulled."""
         crushed = memory[:, depth]
         normal = np.minimum(law.pressed(parameters, overlaps - crushed, memory, kn), most(parameters, kn))
         return np.where(crushed > 0.0, np.maximum(normal, 0.0), normal)
@@ -62,17 +64,17 @@ def capped(law: Law, name: str, column: int) -> Law:
 
 
 def check_cap(compression: float | None, tension: float) -> None:
-    """Raises KeyProblem where a joint is crushed before it is pulled apart; both strengths in Pa."""
+    """Check that the compressive strength exceeds the tensile one, both in Pa; raises KeyProblem."""
     if compression is not None and compression <= tension:
         raise KeyProblem(f"{compression:g} Pa; must be more than tension = {tension:g} Pa", "compression")
 
 
 def _with_cap(bond: Callable, depth: int, column: int) -> Callable:
-    """The scalar law `bond` with a cap."""
+    """Wrap the scalar law `bond` with a compressive strength."""
 
     @inline
     def crushed_bond(gap, slide, shear, kn, ks, parameters, joint, memory, point):
-        """Normal force and shear force of a bonded point that can be crushed; remembers the crushed depth."""
+        """Compute the forces of a bonded point that can be crushed; remembers the crushed depth."""
         crushed, most, crushes = memory[point, depth], parameters[joint, column] / parameters[joint, 0], False
         opening = gap + crushed
         if opening < -most:

@@ -20,7 +20,7 @@ from dem_cli.declarations import parameter
 
 
 class CoulombJoint(FrictionJoint):
-    """[joints.*] with law = "coulomb"."""
+    """Joint table [joints.*] with law = "coulomb": friction without tension and cohesion."""
 
     law: Literal["coulomb"] = "coulomb"
     softening: Softening | None = parameter(
@@ -32,7 +32,7 @@ class CoulombJoint(FrictionJoint):
 
 @inline
 def coulomb(gap, slide, shear, kn, ks, parameters, joint, memory, point):
-    """Normal force and shear force at a Coulomb contact point."""
+    """Compute normal force and shear force at a Coulomb contact point."""
     if gap >= 0.0:
         return 0.0, scale(0.0, shear), True
     normal = -kn * gap
@@ -46,7 +46,7 @@ def coulomb(gap, slide, shear, kn, ks, parameters, joint, memory, point):
 
 @always_inline
 def coulomb_of_lanes(gap, slide, shear, kn, ks, numbers, at):
-    """The same without branches; and whether something was lost."""
+    """Compute normal force and shear force at a Coulomb contact point without branches, and whether work was lost."""
     closed = gap < 0.0
     normal = -kn * gap if closed else 0.0
     trial = axpy(-ks, slide, shear)

@@ -20,7 +20,7 @@ from dem_cli.declarations import Positive, parameter
 
 
 class CrushingJoint(FrictionJoint):
-    """[joints.*] with law = "crushing"."""
+    """Joint table [joints.*] with law = "crushing": friction and a compressive strength."""
 
     integrable: ClassVar[bool] = False
     law: Literal["crushing"] = "crushing"
@@ -28,13 +28,13 @@ class CrushingJoint(FrictionJoint):
 
     @property
     def cracks(self) -> bool:
-        """It is crushed bit by bit from its edge."""
+        """True: the joint is crushed bit by bit from its edge."""
         return True
 
 
 @inline
 def crushing(gap, slide, shear, kn, ks, parameters, joint, memory, point):
-    """Coulomb contact point whose normal force is capped; remembers the crushed depth."""
+    """Compute the forces of a Coulomb contact point with a compressive strength; remembers the crushed depth."""
     closing = -gap - memory[point, 0]
     if closing <= 0.0:
         return 0.0, scale(0.0, shear), True
@@ -51,12 +51,12 @@ def crushing(gap, slide, shear, kn, ks, parameters, joint, memory, point):
 
 
 def strength(parameters, kn) -> Envelope:
-    """Friction, and fc A [N]."""
+    """Return the strength envelope: friction, and the compressive strength fc A [N]."""
     return envelope(len(kn), friction=parameters[:, 1], compression=parameters[:, 2] * kn / parameters[:, 0])
 
 
 def pressed(parameters, overlaps, memory, kn):
-    """kn ⟨overlap − z⟩, at most fc A [N]: the rest of the overlap is crushed stone."""
+    """Compute normal forces kn ⟨overlap − z⟩, at most fc A [N]: the rest of the overlap is crushed stone."""
     return np.minimum(kn * np.maximum(overlaps - memory[:, 0], 0.0), parameters[:, 2] * kn / parameters[:, 0])
 
 

@@ -11,7 +11,7 @@ MOST_STEPS = 50  # of Newton's iteration; 3 to 6 are usual
 
 @inline
 def slip_on_decay(force, stiffness, floor, drop, rate):
-    """The slip x at which force − stiffness x = floor + drop exp(−rate x); force is above the curve at x = 0.
+    """Solve force − stiffness x = floor + drop exp(−rate x) for the slip x; force is above the curve at x = 0.
 
     The difference of the two sides is convex and changes sign once for x > 0, however steep the decay; Newton's
     iteration from beyond the root comes down to it without fail.

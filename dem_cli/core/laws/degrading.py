@@ -21,7 +21,7 @@ from dem_cli.declarations import Positive, parameter
 
 
 class DegradingJoint(FrictionJoint):
-    """[joints.*] with law = "slip-degrading"."""
+    """Joint table [joints.*] with law = "slip-degrading": friction that wears off with the slip."""
 
     law: Literal["slip-degrading"] = "slip-degrading"
     residual: float = parameter(
@@ -32,7 +32,7 @@ class DegradingJoint(FrictionJoint):
 
 @inline
 def degrading(gap, slide, shear, kn, ks, parameters, joint, memory, point):
-    """Coulomb contact point whose friction wears off; remembers the slip."""
+    """Compute the forces of a Coulomb contact point whose friction wears off; remembers the slip."""
     if gap >= 0.0:
         return 0.0, scale(0.0, shear), True
     normal = -kn * gap
@@ -48,7 +48,7 @@ def degrading(gap, slide, shear, kn, ks, parameters, joint, memory, point):
 
 
 def shear_limit(parameters, normal, memory, kn):
-    """Friction after the slip so far × normal force [N]."""
+    """Compute the shear strength [N]: friction after the slip so far × normal force."""
     fresh, worn, length = parameters[:, :3].T
     return (worn + (fresh - worn) * functions.exp(-memory[:, 0] / length)) * normal
 

@@ -1,4 +1,6 @@
-"""Displacement path of one contact point, uncompiled: what a law answers, and what becomes of the work."""
+"""Response of one contact point to a prescribed displacement path, uncompiled: forces of a law and its energy
+balance.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,7 @@ from dem_cli.declarations import Parameters
 
 
 class OneJoint(NamedTuple):
-    """What a point takes of kernels.records.Joints."""
+    """Stiffness and law of one contact point, in the fields of kernels.records.Joints."""
 
     kn: np.ndarray  # [N/m], (1,)
     ks: np.ndarray  # [N/m], (1,)
@@ -23,7 +25,7 @@ class OneJoint(NamedTuple):
 
 
 class OneContact(NamedTuple):
-    """What a point takes of kernels.records.Contacts."""
+    """State of one contact point, in the fields of kernels.records.Contacts."""
 
     normal: np.ndarray  # [N], (1,)
     shear: np.ndarray  # [N], (1, d − 1)

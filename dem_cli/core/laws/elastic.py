@@ -19,7 +19,7 @@ from dem_cli.core.laws.stiffness import StiffJoint
 
 
 class ElasticJoint(StiffJoint):
-    """[joints.*] with law = "elastic"."""
+    """Joint table [joints.*] with law = "elastic": tension and shear without limit."""
 
     integrable: ClassVar[bool] = False
     plane_points: ClassVar[int] = 3  # these have the bending stiffness of a rectangle
@@ -28,20 +28,20 @@ class ElasticJoint(StiffJoint):
 
     @property
     def bends(self) -> bool:
-        """It does not: a joint that never opens has the bending stiffness of a rectangle with three points."""
+        """False: a joint that never opens has the bending stiffness of a rectangle with three points."""
         return False
 
 
 @inline
 def elastic(gap, slide, shear, kn, ks, parameters, joint, memory, point):
-    """Normal force and shear force of two springs; memory: 1 where they hold the blocks together."""
+    """Compute normal force and shear force of two springs; memory: 1 where they hold the blocks together."""
     if gap >= 0.0 and memory[point, 0] == 0.0:
         return 0.0, scale(0.0, shear), True
     return -kn * gap, axpy(-ks, slide, shear), False
 
 
 def pressed(parameters, overlaps, memory, kn):
-    """kn × overlap [N], tension where the blocks are held together."""
+    """Compute normal forces kn × overlap [N], tension where the blocks are held together."""
     return kn * np.where(memory[:, 0] == 0.0, np.maximum(overlaps, 0.0), overlaps)
 
 

@@ -24,7 +24,7 @@ class Envelope(NamedTuple):
 
 
 def frictional(friction: np.ndarray) -> Envelope:
-    """Friction and nothing else: N ≥ 0, |T| ≤ μ N; (n_points,)."""
+    """Make the envelope of dry friction: N ≥ 0, |T| ≤ μ N; (n_points,)."""
     n_points = len(friction)
     return Envelope(
         np.array(friction, float), np.zeros(n_points), np.zeros(n_points), np.full(n_points, np.inf), np.zeros(n_points)
@@ -32,6 +32,6 @@ def frictional(friction: np.ndarray) -> Envelope:
 
 
 def envelope(n_points: int, **values: np.ndarray | float) -> Envelope:
-    """The envelope with these columns; what is not named is that of a dry joint without friction."""
+    """Make an envelope from these columns; those not named are of a dry joint without friction."""
     dry = frictional(np.zeros(n_points))._asdict()
     return Envelope(**dry | {name: np.broadcast_to(value, n_points).astype(float) for name, value in values.items()})

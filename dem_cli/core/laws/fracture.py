@@ -34,7 +34,7 @@ GONE = 1e-9  # share of the strength below which nothing is left
 
 
 class FractureJoint(FrictionJoint):
-    """[joints.*] with law = "fracture"."""
+    """Joint table [joints.*] with law = "fracture": strength that softens by fracture energies."""
 
     integrable: ClassVar[bool] = False
     plane_points: ClassVar[int] = 5  # a joint cracks point by point, in time histories too
@@ -57,7 +57,7 @@ class FractureJoint(FrictionJoint):
 
     @property
     def cracks(self) -> bool:
-        """It does."""
+        """True: the joint cracks bit by bit as it bends."""
         return True
 
     @property
@@ -66,7 +66,7 @@ class FractureJoint(FrictionJoint):
         return self.coefficient if self.friction_residual is None else self.friction_residual
 
     def check(self) -> None:
-        """Tension ends at the tip of the cone, friction does not grow, and the springs are stiff enough."""
+        """Check that tension ends at the tip of the cone, friction does not grow, and the springs are stiff enough."""
         super().check()
         self._tension_within_the_cone()
         self._crushed_beyond_all_else()
@@ -99,7 +99,7 @@ class FractureJoint(FrictionJoint):
 
 @inline
 def fracture(gap, slide, shear, kn, ks, parameters, joint, memory, point):
-    """Normal force and shear force of a point that cracks; remembers strength and opening."""
+    """Compute normal force and shear force of a point that cracks; remembers strength and opening."""
     strength = before = memory[point, STRENGTH]
     if gap >= 0.0 and strength == 0.0:
         return 0.0, scale(0.0, shear), True
@@ -125,19 +125,19 @@ def fracture(gap, slide, shear, kn, ks, parameters, joint, memory, point):
         trial = scale(limit / size, trial)
         normal = max(normal, -strength * parameters[joint, 2] * area)
     memory[point, STRENGTH] = strength if strength > GONE else 0.0
-    # A damaged point gives back along its secant what the books hold for lost: they look at it in every step.
+    # A damaged point gives back along its secant what the energy balance counts as lost: report a loss in every step.
     return normal, trial, slips or 0.0 < before < 1.0 or strength < before
 
 
 def shear_limit(parameters, normal, memory, kn):
-    """s c A + μ N with the strength s that is left [N]."""
+    """Compute the shear strength s c A + μ N with the remaining strength s [N]."""
     strength, area = memory[:, STRENGTH], kn / parameters[:, 0]
     friction = parameters[:, 4] + (parameters[:, 3] - parameters[:, 4]) * strength
     return np.maximum(strength * parameters[:, 1] * area + friction * normal, 0.0)
 
 
 def intact(parameters, kn) -> Envelope:
-    """c A, ft A [N] and μ before it cracks."""
+    """Return the strength envelope before cracking: c A, ft A [N] and μ."""
     area = kn / parameters[:, 0]
     return envelope(
         len(kn), friction=parameters[:, 3], cohesion=parameters[:, 1] * area, tension=parameters[:, 2] * area
@@ -145,7 +145,7 @@ def intact(parameters, kn) -> Envelope:
 
 
 def columns(table, kn):
-    """kn [Pa/m], c, ft [Pa], μ0, μr, ft / G_I, c / G_II [1/m]."""
+    """List the parameters: kn [Pa/m], c, ft [Pa], μ0, μr, ft / G_I, c / G_II [1/m]."""
     return (
         kn, table.cohesion, table.tension, table.coefficient, table.residual,
         table.tension / table.fracture_energy_tension, table.cohesion / table.fracture_energy_shear,
@@ -153,7 +153,7 @@ def columns(table, kn):
 
 
 def pressed(parameters, overlaps, memory, kn):
-    """kn × overlap [N]; in tension along the secant to where it opened, at most what is left of ft A."""
+    """Normal forces kn × overlap [N]; in tension along the secant to the largest opening, up to the rest of ft A."""
     elastic = memory[:, STRENGTH] * parameters[:, 2] / parameters[:, 0]  # of the opening at the peak [m]
     opened = memory[:, OPENED] + elastic
     left = np.divide(elastic, opened, out=np.zeros(len(kn)), where=opened > 0.0)

@@ -9,7 +9,7 @@ from dem_cli.declarations import parameter
 
 
 class FrictionJoint(StiffJoint):
-    """Stiffness and friction of a joint."""
+    """Joint table with stiffness and friction, common to laws that have friction."""
 
     friction: float | None = parameter(
         default=None, ge=0.0, le=1000.0, description="friction coefficient tan(φ) [-]", examples=[0.6]
@@ -29,7 +29,7 @@ class FrictionJoint(StiffJoint):
     )
 
     def check(self) -> None:
-        """Friction is given once."""
+        """Check that friction is given once, as a coefficient or as an angle."""
         super().check()
         if (self.friction is None) == (self.friction_angle_deg is None):
             given = "both are given" if self.friction is not None else "none is given"

@@ -1,4 +1,4 @@
-"""The contract of a joint law.
+"""Interface of a joint law.
 
 A law is one plain scalar function, compiled into the contact loop:
 
@@ -33,7 +33,7 @@ JointTable = TypeVar("JointTable", bound=Parameters)
 
 @dataclass(frozen=True)
 class Law(Generic[JointTable]):
-    """A registered joint law, with the table of its parameters."""
+    """Joint law as it is registered, with the table of its parameters."""
 
     name: str  # `law` in the case file
     parameters: type[JointTable]  # the [joints.*] table
@@ -60,16 +60,16 @@ class Law(Generic[JointTable]):
     vectors: int = 0  # vectors along the tangents that it remembers beside them
     intact: tuple[float, ...] = ()  # first scalars of points that touch at the start; all others start from zero
     # Carries tension, or deforms for good across the joint: called for open points too, and the work that its
-    # normal springs lose is booked as well.
+    # normal springs lose is counted in the energy balance as well.
     bonded: bool = False
     rates: tuple[int, ...] = ()  # columns that are velocities [m/s]: handed to the law as displacement per step
     variant: Callable[[JointTable], Law | None] = lambda table: None  # another law that this table asks for
     source: str = ""  # where the law is published
 
     def n_memory(self, dimension: int) -> int:
-        """Columns of `memory`."""
+        """Number of columns of `memory` of a contact point."""
         return self.scalars + self.vectors * (dimension - 1)
 
     def of(self, table: JointTable) -> Law:
-        """The law itself, or the variant of it that the table asks for."""
+        """Return the law itself, or the variant of it that this table selects."""
         return self.variant(table) or self

@@ -1,4 +1,4 @@
-"""Mixed joint laws in one scene: each joint finds its own by a number in its last column."""
+"""Several joint laws in one model: each joint selects its law by a number in its last column."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from dem_cli.declarations import Parameters
 
 @cache
 def mixed(laws: tuple[Law, ...]) -> Law:
-    """One law for joints of several: the parameters of each, filled up with zeros, then the number of its law.
+    """Combine several laws into one: the parameters of each, filled up with zeros, then the number of its law.
 
     The columns of a joint are made by `row`, not by the record.
     """
@@ -63,14 +63,14 @@ def mixed(laws: tuple[Law, ...]) -> Law:
 
 
 def row(laws: Sequence[Law], law: Law, columns: Sequence[float], width: int) -> np.ndarray:
-    """The parameters of a joint with this law, `width` columns wide and, where laws are mixed, its number last."""
+    """Make the parameters of a joint with this law, `width` columns and, where laws are mixed, its number last."""
     if len(laws) == 1:
         return np.array(columns, float)
     return np.array([*columns, *[0.0] * (width - len(columns)), float(laws.index(law))])
 
 
 def _either(number: int, this: Callable, others: Callable) -> Callable:
-    """A law that is `this` where the last column is `number`, and else one of the others."""
+    """Choose `this` law where the last column is `number`, else one of the others."""
 
     @inline
     def either(gap, slide, shear, kn, ks, parameters, joint, memory, point):

@@ -32,7 +32,7 @@ STATE, PULLED, SLIP = 0, 1, 2  # memory: state, plastic opening [m], slip [m]
 
 
 class MohrCoulombJoint(FrictionJoint):
-    """[joints.*] with law = "mohr-coulomb"."""
+    """Joint table [joints.*] with law = "mohr-coulomb": cohesion, tension cut-off, friction, dilation."""
 
     integrable: ClassVar[bool] = False
     plane_points: ClassVar[int] = 5  # a joint cracks point by point, in time histories too
@@ -63,7 +63,7 @@ class MohrCoulombJoint(FrictionJoint):
 
     @property
     def cracks(self) -> bool:
-        """Where there is any strength beside friction."""
+        """True where the joint cracks or is crushed bit by bit: it has any strength beside friction."""
         return self.cohesion > 0.0 or self.tension > 0.0 or self.compression is not None
 
     @property
@@ -72,7 +72,7 @@ class MohrCoulombJoint(FrictionJoint):
         return self.coefficient if self.friction_residual is None else self.friction_residual
 
     def check(self) -> None:
-        """The residual strengths are at most the first ones, and each tension ends at the tip of its cone."""
+        """Check that residual strengths are at most the peak ones, and tension ends at the tip of its cone."""
         super().check()
         self._residual_is_less()
         self._tension_within_the_cone()
@@ -113,7 +113,7 @@ class MohrCoulombJoint(FrictionJoint):
 
 @inline
 def slip_while_dilating(start, away, reach, force, ks, grip):
-    """How far x the point slips until force − ks x = grip min(|start + x away|, reach); the shortest way.
+    """Solve force − ks x = grip min(|start + x away|, reach) for the slip x; the smallest root.
 
     start: slip so far; away: unit vector along which it slips on. At x = 0 the left side is larger.
     """
@@ -135,7 +135,7 @@ def slip_while_dilating(start, away, reach, force, ks, grip):
 
 @inline
 def mohr_coulomb(gap, slide, shear, kn, ks, parameters, joint, memory, point):
-    """Normal force and shear force of a bonded, frictional, dilating contact point."""
+    """Compute normal force and shear force of a bonded, frictional, dilating contact point."""
     area, tangent, reach = kn / parameters[joint, 0], parameters[joint, 7], parameters[joint, 8]
     state, slip = memory[point, STATE], load(memory, point, SLIP, shear)
     trial = axpy(-ks, slide, shear)
@@ -177,7 +177,7 @@ def mohr_coulomb(gap, slide, shear, kn, ks, parameters, joint, memory, point):
 
 
 def shear_limit(parameters, normal, memory, kn):
-    """c A + μ N of the bond as it is [N]; points that were never bonded have no c."""
+    """Compute the shear strength c A + μ N of the bond as it is [N]; points that were never bonded have no c."""
     area = kn / parameters[:, 0]
     intact, broken = memory[:, STATE] == INTACT, memory[:, STATE] == BROKEN
     cohesion = np.where(intact, parameters[:, 1], np.where(broken, parameters[:, 4], 0.0))
@@ -186,17 +186,17 @@ def shear_limit(parameters, normal, memory, kn):
 
 
 def intact(parameters, kn) -> Envelope:
-    """c A, ft A [N] and μ of the bond."""
+    """Return the strength envelope of the intact bond: c A, ft A [N] and μ."""
     return _bond(parameters[:, 1:4], parameters, kn)
 
 
 def broken(parameters, kn) -> Envelope:
-    """The same of what is left of it."""
+    """Return the residual strength envelope after failure of the bond: c A, ft A [N] and μ."""
     return _bond(parameters[:, 4:7], parameters, kn)
 
 
 def _bond(strengths, parameters, kn) -> Envelope:
-    """strengths: c, ft [Pa] and μ, (n_points, 3). A joint that stops dilating collapses without."""
+    """Strength envelope of a bond; strengths: c, ft [Pa] and μ, (n_points, 3). Dilation that ends is left out."""
     area, endless = kn / parameters[:, 0], np.isinf(parameters[:, 8])
     cohesion, tension, friction = strengths.T
     return envelope(
@@ -206,7 +206,7 @@ def _bond(strengths, parameters, kn) -> Envelope:
 
 
 def columns(table, kn):
-    """kn, then c, ft, μ intact, the same after failure, tan ψ, zdil."""
+    """List the parameters: kn, then c, ft, μ intact, the same after failure, tan ψ, zdil."""
     return (
         kn, table.cohesion, table.tension, table.coefficient,
         table.cohesion_residual, table.tension_residual, table.residual,
@@ -215,7 +215,7 @@ def columns(table, kn):
 
 
 def pressed(parameters, overlaps, memory, kn):
-    """kn × overlap [N], that by dilation included; tension as far as the bond holds it."""
+    """Compute normal forces kn × overlap [N], that by dilation included; tension as far as the bond holds it."""
     tangent = parameters[:, 7]
     slips = np.sqrt((memory[:, SLIP : SLIP + 2] ** 2).sum(axis=1))
     closed = overlaps + tangent * np.minimum(slips, np.where(tangent > 0.0, parameters[:, 8], 0.0))

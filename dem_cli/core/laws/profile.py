@@ -1,4 +1,4 @@
-"""`profile` of a joint: contact surfaces that are not plane (thesis 7.2.3, 7.3.1)."""
+"""Table `profile` of a joint: contact surfaces that are not plane (thesis 7.2.3, 7.3.1)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Sides = Annotated[int, Limits(ge=2, le=MOST_SIDES)]
 
 
 class ProfileShape(Parameters):
-    """A convex polygon on a flat surface, but for its size: each number is a value or a range to draw from."""
+    """Convex polygon on a flat surface, without its size: each number is a value or a range to draw from."""
 
     sides: Sides | tuple[Sides, Sides] | None = parameter(
         default=None, description="number of sides, or [lowest, highest]; default: as many as lengths", examples=[3]
@@ -44,7 +44,7 @@ class ProfileShape(Parameters):
     )
 
     def check(self) -> None:
-        """Sides, lengths and the share of the middle one go together."""
+        """Check that sides, lengths and the share of the middle side go together."""
         super().check()
         given = 0 if self.lengths is None else len(self.lengths)
         if self.lengths is not None and self.central is not None:
@@ -70,7 +70,7 @@ class ProfileShape(Parameters):
 
     @property
     def number(self) -> tuple[int, int]:
-        """Lowest and highest number of sides."""
+        """Lowest and highest number of sides of a profile."""
         return pair(len(self.lengths or ()) if self.sides is None else self.sides)
 
 
@@ -82,13 +82,13 @@ class Profile(ProfileShape):
     )
 
     def check(self) -> None:
-        """The aperture, too, is from its lowest to its highest value."""
+        """Check that the aperture, too, runs from its lowest to its highest value."""
         super().check()
         _in_order(self.aperture, "aperture")
 
     @property
     def ranges(self) -> dict[str, Any]:
-        """All of it as plain numbers, every value a pair (lowest, highest), by the names of contact.layout.Layout."""
+        """Convert to plain numbers, every value a pair (lowest, highest), by the names of contact.layout.Layout."""
         return {
             "sides": self.number,
             "aperture": pair(self.aperture),
@@ -101,7 +101,7 @@ class Profile(ProfileShape):
 
 
 def pair(value: Any) -> tuple[Any, Any]:
-    """(lowest, highest) of a value or a range."""
+    """Return (lowest, highest) of a value or a range."""
     return value if isinstance(value, tuple) else (value, value)
 
 

@@ -1,4 +1,4 @@
-"""Static and dynamic friction: it falls with the speed of the slip (thesis 5.2.2, Figure 5-22).
+"""Static and dynamic friction: friction that falls with the speed of the slip (thesis 5.2.2, Figure 5-22).
 
     |s| ≤ μ(v) N,   μ(v) = μd + (μs − μd) exp(−v / vc)
 
@@ -23,7 +23,7 @@ from dem_cli.declarations import KeyProblem, NonNegative, Positive, parameter
 
 
 class RateJoint(FrictionJoint):
-    """[joints.*] with law = "rate-dependent"; its friction is the static one."""
+    """Joint table [joints.*] with law = "rate-dependent"; its friction is the static one."""
 
     law: Literal["rate-dependent"] = "rate-dependent"
     friction_dynamic: NonNegative = parameter(
@@ -34,7 +34,7 @@ class RateJoint(FrictionJoint):
     )
 
     def check(self) -> None:
-        """Dynamic friction is at most the static one."""
+        """Check that dynamic friction is at most the static one."""
         super().check()
         if self.friction_dynamic > self.coefficient:
             raise KeyProblem(
@@ -44,7 +44,7 @@ class RateJoint(FrictionJoint):
 
 @inline
 def rate_dependent(gap, slide, shear, kn, ks, parameters, joint, memory, point):
-    """Coulomb contact point with the friction of its speed; remembers it while it slips, 0 while it sticks."""
+    """Forces of a Coulomb contact point with speed-dependent friction; memory: speed of slip, 0 where it sticks."""
     if gap >= 0.0:
         memory[point, 0] = 0.0
         return 0.0, scale(0.0, shear), True
@@ -63,7 +63,7 @@ def rate_dependent(gap, slide, shear, kn, ks, parameters, joint, memory, point):
 
 
 def shear_limit(parameters, normal, memory, kn):
-    """Friction of the speed, or the static one where the point sticks, × normal force [N]."""
+    """Shear strength [N]: friction at the speed, or the static one where the point sticks, × normal force."""
     return np.where(memory[:, 0] > 0.0, memory[:, 0], parameters[:, 0]) * normal
 
 

@@ -1,4 +1,4 @@
-"""All joint laws by name, each loaded when a case names it. A new law is one file and one line here."""
+"""Registry of all joint laws by name, each loaded when it is named. A new law is one file and one line here."""
 
 from __future__ import annotations
 

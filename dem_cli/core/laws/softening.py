@@ -35,7 +35,7 @@ class Softening(Parameters):
 
 @inline
 def friction_softening(gap, slide, shear, kn, ks, parameters, joint, memory, point):
-    """Coulomb contact point whose friction falls with its slip; remembers the slip."""
+    """Compute the forces of a Coulomb contact point whose friction falls with its slip; remembers the slip."""
     if gap >= 0.0:
         return 0.0, scale(0.0, shear), True
     normal = -kn * gap
@@ -70,7 +70,7 @@ def friction_softening(gap, slide, shear, kn, ks, parameters, joint, memory, poi
 
 
 def shear_limit(parameters, normal, memory, kn):
-    """Friction after the slip so far × normal force [N]."""
+    """Compute the shear strength [N]: friction after the slip so far × normal force."""
     friction, residual, start, length = parameters[:, :4].T
     fallen = np.where(memory[:, 0] > start, 1.0, 0.0)
     ramp = length > 0.0
@@ -79,7 +79,7 @@ def shear_limit(parameters, normal, memory, kn):
 
 
 def columns(table, kn):
-    """μ, β μ, ΔU1, ΔU2."""
+    """List the parameters: μ, β μ, ΔU1, ΔU2."""
     softening = table.softening
     return (table.coefficient, softening.residual * table.coefficient, softening.slip_start, softening.slip_length)
 

@@ -55,37 +55,37 @@ class StiffJoint(Parameters):
     )
 
     def check(self) -> None:
-        """Points are those of plane joints."""
+        """Check that contact points are given for plane joints only, not beside a profile."""
         super().check()
         if self.profile is not None and self.points is not None:
             raise KeyProblem("not allowed with 'profile': its vertices are the contact points", "points")
 
     @property
     def asks_for_points(self) -> bool:
-        """Whether the case says where its contact points are."""
+        """True where the input says where the contact points of the joint are."""
         return self.profile is not None or self.points is not None
 
     @property
     def integrates(self) -> bool:
-        """Whether its pressure is integrated over its face where it is elastic."""
+        """True where the pressure on an elastic face is integrated over the face."""
         return self.integrable and not self.asks_for_points
 
     @property
     def cracks(self) -> bool:
-        """Whether it cracks or is crushed bit by bit as it bends: it has SECTION points then, but in time histories."""
+        """True where the joint cracks or is crushed bit by bit: it has SECTION points then, but in time histories."""
         return False
 
     @property
     def bends(self) -> bool:
-        """Whether it opens bit by bit as it bends, and has BENDING_POINTS where its stiffness is a property."""
+        """True where the joint opens bit by bit, and has BENDING_POINTS where its stiffness is a property."""
         return not self.cracks
 
     def sectional(self, lands: bool = False) -> bool:
-        """Whether it has the points with which it is as strong as its whole section. lands: as in `follows`."""
+        """Test whether the joint has the points that give the strength of its whole section. lands: as in `follows`."""
         return self.points == "section" or (self.cracks and not self.asks_for_points and not lands)
 
     def follows(self, deforms: bool = False, lands: bool = False) -> bool:
-        """Whether its contact points are those that its bending stiffness asks for.
+        """Test whether the contact points of the joint are those that its bending stiffness needs.
 
         Not where blocks land on each other: points between the ends take part of the blow, and a block that rocks loses
         less than Housner's. deforms: whether the joint carries the deformation of blocks; lands: whether the analysis
@@ -94,7 +94,8 @@ class StiffJoint(Parameters):
         return not self.asks_for_points and self.bends and not lands and (deforms or self.kn != "auto")
 
     def contact_points(self, dimension: int, deforms: bool = False, lands: bool = False) -> int:
-        """Number of contact points of a plane joint in 2D; in 3D along each side of its area, where 2 are its vertices.
+        """Return the number of contact points of a plane joint in 2D; in 3D along each side of its area, where 2 are
+        its vertices.
 
         deforms, lands: as in `follows`.
         """
@@ -109,6 +110,8 @@ class StiffJoint(Parameters):
         return self.plane_points if self.points is None else AREA_POINTS[str(self.points)]
 
     def centred(self, dimension: int, deforms: bool = False, lands: bool = False) -> bool:
-        """Whether its contact points are the vertices and the centre of an area. deforms, lands: as in `follows`."""
+        """Test whether the contact points of the joint are the vertices and the centre of its area. deforms, lands: as
+        in `follows`.
+        """
         asked = self.points == "vertices+centre" or (self.points is None and self.plane_points > 2)
         return asked and dimension == 3 and not self.follows(deforms, lands) and not self.sectional(lands)

@@ -22,13 +22,13 @@ KEYS = {  # strength -> keys of [joints.*] that hold it
 
 
 def strengths(joint: StiffJoint) -> dict[str, float]:
-    """Friction coefficient [-], cohesion and tensile strength [Pa] of a joint, as far as its law has them."""
+    """List friction coefficient [-], cohesion and tensile strength [Pa] of a joint, as far as its law has them."""
     found = {"friction": joint.coefficient} if isinstance(joint, FrictionJoint) else {}
     return found | {name: float(getattr(joint, name)) for name in ("cohesion", "tension") if hasattr(joint, name)}
 
 
 def reduced(joint: StiffJoint, factor: float, which: Collection[str]) -> StiffJoint:
-    """The joint with the strengths `which` (of KEYS) divided by `factor`; a factor below 1 makes it stronger.
+    """Divide the strengths `which` (of KEYS) of a joint by `factor`; a factor below 1 makes it stronger.
 
     Raises ValueError, as `Parameters` do, where the result is beyond what the law allows.
     """
@@ -43,7 +43,7 @@ def reduced(joint: StiffJoint, factor: float, which: Collection[str]) -> StiffJo
 
 
 def _keep_within(data: dict[str, Any], joint: StiffJoint) -> None:
-    """Tensile strength up to the tip of the cone, residual up to the whole one, dilation up to friction; in place."""
+    """Limit tensile strength to the tip of the cone, residual to peak strength, dilation to friction; in place."""
     if not isinstance(joint, FrictionJoint):
         return
     friction = data["friction"] if data.get("friction") is not None else joint.coefficient

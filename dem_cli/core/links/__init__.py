@@ -1,1 +1,1 @@
-"""One-dimensional elements between points of blocks: ties, anchors; one kind, one file."""
+"""Links: one-dimensional elements between points of blocks, such as ties, anchors and bars; one kind, one file."""

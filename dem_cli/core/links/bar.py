@@ -1,4 +1,4 @@
-"""[bars.NAME] and [[reinforcement]]: bars in blocks, tied to them by bond: reinforcement, stitches, grouted anchors.
+"""Reinforcing bars in blocks ([bars.NAME], [[reinforcement]]): stitches and grouted anchors, held by bond.
 
 A bar is a chain of nodes that carry axial forces from one to the next, EA/l, elastic – perfectly plastic. Each node is
 tied to a material point of the block in which it lies: along the bar by the bond, a spring kb l with a slider sb l;
@@ -62,22 +62,22 @@ class Bars(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """Name in the registry."""
+        """Name of this kind of link in the registry."""
         return BAR.key
 
     @property
     def n_drawn(self) -> int:
-        """How many were drawn."""
+        """Number of bars as they were drawn."""
         return len(self.first) - 1
 
     @property
     def joints(self) -> np.ndarray:
-        """Elements that cross joints, one for each, (n_joints,)."""
+        """Elements of bars that cross joints, one for each crossing, (n_joints,)."""
         return np.flatnonzero(self.crossing >= 0)
 
     @property
     def spans(self) -> Spans:
-        """Across the joints, from node to node where these have slipped to."""
+        """Spans of bars across the joints, from node to node where these have slipped to."""
         n_joints, d = self.axes.shape
         right = self.joints - np.searchsorted(self.first[1:] + np.arange(1, self.n_drawn + 1), self.joints, "right")
         slips = self.state[np.column_stack([right - 1, right]), STRETCH]
@@ -85,25 +85,25 @@ class Bars(NamedTuple):
         return Spans(self.blocks, arms, self.axes, self.starts, self.lengths)
 
     def started(self, origin: np.ndarray) -> Bars:
-        """A copy for a simulation that counts places from `origin`."""
+        """Copy the bars for a simulation that counts places from `origin`."""
         alone = self._replace(**{name: getattr(self, name).copy() for name in _WORK}, state=np.zeros_like(self.state))
         return alone._replace(starts=self.starts - np.tile(origin, 2))
 
     def chain(self, number: int) -> Chain:
-        """One bar, elastic."""
+        """Return one bar as an elastic chain."""
         begin, end, n = self.rows(number)
         elements = slice(begin + number, end + number + 1)
         stiffness = self.stiffness[n:][elements]
         return Chain(self.stiffness[begin:end], stiffness, np.flatnonzero(self.crossing[elements] >= 0))
 
     def joints_of(self, number: int) -> slice:
-        """The joints that one bar crosses."""
+        """Return the joints that one bar crosses."""
         begin, end, _ = self.rows(number)
         found = np.searchsorted(self.joints, [begin + number, end + number + 1])
         return slice(int(found[0]), int(found[1]))
 
     def rows(self, number: int) -> tuple[int, int, int]:
-        """First node of a bar, that of the next one, and how many nodes all have: where elements begin."""
+        """Return the first node of a bar, that of the next one, and the number of all nodes: where elements begin."""
         return int(self.first[number]), int(self.first[number + 1]), len(self.slips)
 
     def axial(self, bodies: Any = None) -> Springs:
@@ -124,16 +124,18 @@ class Bars(NamedTuple):
         return Springs(blocks, motion, stiffness)
 
     def _factor(self, number: int) -> np.ndarray:
-        """L of K = L Lᵀ, lower triangular."""
+        """Compute the Cholesky factor L of the condensed stiffness K = L Lᵀ of a bar, lower triangular."""
         found: np.ndarray = root(self.chain(number).condensed())
         return found
 
     def acting(self) -> np.ndarray:
-        """All of them: bars take tension and compression."""
+        """Return True for all axial springs: bars take tension and compression."""
         return np.ones(len(self.blocks), bool)
 
     def across(self, bodies: Any = None) -> Springs:
-        """Springs across the elements at joints: what N/L of them does, and their own share when blocks slide there."""
+        """Return springs across the elements at joints: geometric stiffness N/L, and a share of the axial one when
+        blocks slide.
+        """
         held = self.spans
         _, lengths, _ = held.lines(bodies)
         stiffness = np.maximum(self.forces, 0.0) / lengths
@@ -149,15 +151,16 @@ class Bars(NamedTuple):
         return self.state[len(self.slips) + self.joints, FORCE]
 
     def _own_stiffness(self) -> np.ndarray:
-        """Of each joint that opens while the others do not [N/m], (n_joints,)."""
+        """Compute the stiffness of each joint crossing when the others do not open [N/m], (n_joints,)."""
         return np.concatenate([np.zeros(0), *(np.diag(self.chain(b).condensed()) for b in range(self.n_drawn))])
 
     def turning(self, bodies: Any) -> np.ndarray:
-        """Geometric stiffness of the present forces (`Spans.turning`)."""
+        """Compute the geometric stiffness of the present bar forces (`Spans.turning`)."""
         return self.spans.turning(self.forces, bodies)
 
     def bounded(self) -> tuple[Springs, np.ndarray]:
-        """For limit analysis: a force at each joint, at most what yields, or what bond and anchors on either side hold.
+        """Return bars for limit analysis: a force at each joint, at most what yields, or what bond and anchors on
+        either side hold.
 
         That bond in a block between two joints also bounds how much these forces differ is left out.
         """
@@ -168,10 +171,10 @@ class Bars(NamedTuple):
         return springs, np.column_stack([-most, most])
 
     def only_pulling(self) -> None:
-        """They are not: bars press as well, and slide in their blocks."""
+        """Return None, as bars are no springs that only pull: they press as well, and slide in their blocks."""
 
     def _anchorage(self, number: int) -> np.ndarray:
-        """Largest force of one bar at its joints [N], (n_joints of it,)."""
+        """Compute the largest force of one bar at its joints, by yield, bond and anchors [N], (n_joints of it,)."""
         begin, end, n = self.rows(number)
         at = self.joints[self.joints_of(number)]
         elements = n + begin + number
@@ -182,19 +185,21 @@ class Bars(NamedTuple):
         return np.minimum(np.minimum(before + anchors[0], behind + anchors[1]), self.limits[n + at])
 
     def yields(self) -> bool:
-        """Whether any yields, or slides in its bond."""
+        """Test whether any bar yields, or slides in its bond."""
         return bool(np.isfinite(self.limits).any())
 
     def softest(self) -> float:
-        """Least stiffness of a joint that opens, by its bar alone [N/m]."""
+        """Compute the least stiffness of a joint that opens, by its bar alone [N/m]."""
         return float(self._own_stiffness().min(initial=np.inf))
 
     def energy(self) -> float:
-        """In all springs [J]."""
+        """Compute the elastic energy in all springs of bars [J]."""
         return 0.5 * float((self.state[:, FORCE] ** 2 / np.where(self.stiffness > 0.0, self.stiffness, 1.0)).sum())
 
     def follow(self, motion: np.ndarray, bodies: Any) -> None:
-        """Slips and forces after small displacements of all blocks, (n_blocks, n_dof); elastic, up to the limits."""
+        """Update slips and forces of bars after small displacements of all blocks, (n_blocks, n_dof); elastic, up to
+        the limits.
+        """
         axes, _, arms = self.spans.lines(bodies)
         opened = (self.spans.motion(axes, arms) * motion[self.blocks]).sum(axis=(1, 2))
         n = len(self.slips)
@@ -211,12 +216,14 @@ class Bars(NamedTuple):
     # -- what people read --------------------------------------------------------------------------
 
     def length(self, number: int) -> float:
-        """Of one bar [m]."""
+        """Return the length of one bar [m]."""
         last = self.first[number + 1] - 1
         return float(self.node_places[last] + 0.5 * self.reach[last])
 
     def reading(self, number: int, quantity: str, at: float) -> LinkReading:
-        """Slip, straight between the nodes of a block, or force, straight between the middles of elements."""
+        """Return monitor weights: slip, linear between the nodes of a block, or force, linear between middles of
+        elements.
+        """
         begin, end, n = self.rows(number)
         places, reach = self.node_places[begin:end], self.reach[begin:end]
         if quantity == "slip":
@@ -238,7 +245,9 @@ class Bars(NamedTuple):
         return LinkReading((int(rows[right - 1]), int(rows[right])), column, (1.0 - share, share))
 
     def answer(self, number: int) -> dict[str, Any]:
-        """Largest force and slip of one with their places along it, and whether it yielded or slid somewhere."""
+        """Summarise one bar: largest force and slip with their places along it, and whether it yielded or slid
+        somewhere.
+        """
         begin, end, n = self.rows(number)
         slips, forces = self.state[begin:end], self.state[n + begin + number : n + end + number + 1]
         middles = np.concatenate([[0.0], self.node_places[begin:end] + 0.5 * self.reach[begin:end]])
@@ -255,7 +264,7 @@ class Bars(NamedTuple):
         }
 
     def outline(self) -> Outline:
-        """From end to end through the nodes and on either side of the joints; at a node the mean force beside it."""
+        """Return bars as lines through their nodes and on either side of joints; at a node the mean force beside it."""
         blocks, arms, forces, counts, n, d = [], [], [], [], len(self.slips), self.axes.shape[1]
         for bar in range(self.n_drawn):
             begin, end, _ = self.rows(bar)
@@ -278,7 +287,7 @@ class Bars(NamedTuple):
         return Outline(np.array(counts), np.concatenate(blocks), np.concatenate(arms), np.concatenate(forces))
 
     def words(self, number: int, ids: Sequence[str]) -> str:
-        """What one is, in a line; ids: of the blocks."""
+        """Describe one bar in a line of text; ids: of the blocks."""
         begin, end, _ = self.rows(number)
         here, of = self.joints_of(number), self.node_blocks[begin:end]
         most = self._anchorage(number)
@@ -295,7 +304,7 @@ _WORK = (
 
 
 def bars(tables: Sequence[Reinforcement], drawn: Sequence[DrawnBar], centroids: np.ndarray) -> Bars:
-    """The bars of a case whose blocks lie where they are; centroids: of the blocks [m], (n_blocks, d)."""
+    """Build the bars of a model whose blocks lie where they are; centroids: of the blocks [m], (n_blocks, d)."""
     d, cut = centroids.shape[1], [nodes_of(bar) for bar in drawn]
     first = np.concatenate([[0], np.cumsum([len(nodes.blocks) for nodes in cut])]).astype(np.int64)
     blocks, arms, along, reach, places = (

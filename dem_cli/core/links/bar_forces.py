@@ -26,7 +26,7 @@ TOO_FAR = 0.1  # slope behind a step over that before it, from which on the step
 
 @inline
 def spring(stiffness, limit, plastic, stretch):
-    """Force of an elastic – perfectly plastic spring, and whether it is at its limit."""
+    """Compute the force of an elastic – perfectly plastic spring, and whether it is at its limit."""
     force = stiffness * (stretch - plastic)
     if force > limit:
         return limit, True
@@ -37,7 +37,7 @@ def spring(stiffness, limit, plastic, stretch):
 
 @inline
 def gradient(bars, bar, slips, out):
-    """Unbalanced forces of the nodes of one bar into `out`; returns the largest force of a spring in it.
+    """Compute unbalanced forces of the nodes of one bar into `out`; returns the largest force of a spring in it.
 
     Stretches of all springs go into their rows of `stretch`, and their tangents into those of `tangent`.
     """
@@ -73,7 +73,9 @@ def gradient(bars, bar, slips, out):
 
 @inline
 def newton_step(bars, bar):
-    """Where Newton's method goes from the present tangents and unbalanced forces, into `step`; the slope along it."""
+    """Solve for the Newton step from the present tangents and unbalanced forces, into `step`; returns the slope along
+    it.
+    """
     begin, end, n = bars.first[bar], bars.first[bar + 1], bars.slips.shape[0]
     diagonal, step = bars.diagonal, bars.step
     for i in range(begin, end):
@@ -100,7 +102,7 @@ def newton_step(bars, bar):
 
 @inline
 def balance(bars, bar):
-    """Slips of one bar that leave its nodes in equilibrium, into `slips`."""
+    """Find the slips of one bar that leave its nodes in equilibrium, into `slips`."""
     begin, end = bars.first[bar], bars.first[bar + 1]
     slips, step, unbalanced = bars.slips, bars.step, bars.unbalanced
     largest = gradient(bars, bar, slips, unbalanced)
@@ -127,7 +129,7 @@ def balance(bars, bar):
 
 @inline
 def settle(bars, bar):
-    """What has yielded or slipped in one bar, and the forces, into its rows of `state`; returns the work lost [J]."""
+    """Update plastic deformations and forces of one bar in its rows of `state`; returns the work lost [J]."""
     begin, end, n = bars.first[bar], bars.first[bar + 1], bars.slips.shape[0]
     state, lost = bars.state, 0.0
     for part in range(2):
@@ -147,7 +149,7 @@ def settle(bars, bar):
 
 @inline
 def drives_that_stay(bars, bodies, like, like_rotation):
-    """Elongation of each element that crosses a joint, without slips."""
+    """Compute the elongation of each element that crosses a joint in fixed geometry, without slips."""
     d, positions, orientations = len(like), bodies.positions, bodies.orientations
     for e in range(bars.crossing.shape[0]):
         c = bars.crossing[e]
@@ -170,7 +172,9 @@ def drives_that_stay(bars, bodies, like, like_rotation):
 
 @inline
 def drives_that_move(bars, bodies, like, like_rotation):
-    """The same, linear in the slips about those of the last step; nodes give way across the bar."""
+    """Compute the elongation of each element that crosses a joint in moving geometry. It is linear in the slips about
+    those of the last step; nodes give way across the bar.
+    """
     d = len(like)
     dowels = bars.stiffness.shape[0] - 2 * bars.blocks.shape[0]
     for bar in range(bars.first.shape[0] - 1):
@@ -209,7 +213,7 @@ def drives_that_move(bars, bodies, like, like_rotation):
 
 @inline
 def give_way(bars, e, c, force):
-    """How far the nodes beside a joint go across the bar: towards the force there, by a step that cannot overshoot.
+    """Compute the lateral displacement of the nodes beside a joint, towards the force there, without overshoot.
 
     With the angle between the bar and the element that crosses, each carries N sin of it.
     """
@@ -226,12 +230,12 @@ def give_way(bars, e, c, force):
 
 
 def make_bar_forces(moves: bool) -> Callable:
-    """The loop over bars; moves: along the lines between their nodes now, else along those of the start."""
+    """Make the loop over bars; moves: along the lines between their nodes now, else along those of the start."""
     drive = drives_that_move if moves else drives_that_stay
 
     @inline
     def bar_forces(bars, bodies, like, like_rotation):
-        """Adds the forces of all bars on their blocks to `forces`; returns the work lost by yielding and slip [J]."""
+        """Add the forces of all bars on their blocks to `forces`; returns the work lost by yielding and slip [J]."""
         d, n, forces, lost = len(like), bars.slips.shape[0], bodies.forces, 0.0
         for i in range(n):
             bars.slips[i] = bars.state[i, STRETCH]

@@ -1,4 +1,4 @@
-"""Bars as they are drawn: their tables in the case, the pieces that lie in blocks, and the nodes and elements of these.
+"""Bars as they are drawn: their input tables, their pieces in blocks, and the nodes and elements of these.
 
 What holds them and how they act: links/bar.py.
 """
@@ -39,12 +39,12 @@ class BarProfile(Parameters):
 
     @property
     def decay(self) -> float:
-        """μ = √(kb/EA): along 1/μ the force in a bar that is pulled falls to 1/e [1/m]."""
+        """Decay rate of the bar force by bond, μ = √(kb/EA): along 1/μ the force of a pulled bar falls to 1/e [1/m]."""
         return math.sqrt(self.bond_stiffness / (self.young * self.area))
 
     @property
     def largest(self) -> float:
-        """Its yield force [N]."""
+        """Yield force of the bar [N]."""
         return math.inf if self.yield_stress is None else self.yield_stress * self.area
 
 
@@ -69,7 +69,7 @@ class Reinforcement(Parameters):
     )
 
     def check(self) -> None:
-        """Raises KeyProblem where two corners are one point."""
+        """Check that the corners of the path are different points; raises KeyProblem."""
         super().check()
         for i, (a, b) in enumerate(zip(self.path, self.path[1:])):
             if len(a) == len(b) and math.dist(a, b) == 0.0:
@@ -77,14 +77,14 @@ class Reinforcement(Parameters):
 
 
 class BarPiece(NamedTuple):
-    """A straight part of a bar in one block."""
+    """Straight part of a bar in one block."""
 
     block: int
     ends: np.ndarray  # from the centroid of the block [m], (2, d)
 
 
 class DrawnBar(NamedTuple):
-    """A bar as it was drawn: what it is, and its pieces in the blocks one after another."""
+    """Bar as it was drawn: its profile, and its pieces in the blocks one after another."""
 
     profile: BarProfile
     element: float  # greatest length of an element [m]
@@ -93,7 +93,7 @@ class DrawnBar(NamedTuple):
 
 
 class BarNodes(NamedTuple):
-    """The nodes of one bar, one behind another, in the middles of equal parts of its pieces."""
+    """Nodes of one bar, one behind another, in the middles of equal parts of its pieces."""
 
     blocks: np.ndarray  # in which they lie, (n,)
     arms: np.ndarray  # from its centroid [m], (n, d)
@@ -103,7 +103,7 @@ class BarNodes(NamedTuple):
 
 
 def nodes_of(bar: DrawnBar) -> BarNodes:
-    """Nodes of a bar, no farther apart than its elements may be long."""
+    """Place the nodes of a bar, no farther apart than its elements may be long."""
     blocks, arms, along, reach, places, upto = [], [], [], [], [], 0.0
     for piece in bar.pieces:
         way = piece.ends[1] - piece.ends[0]

@@ -1,6 +1,6 @@
-"""The contract of a kind of link: elements between material points of blocks, whose forces follow those of the joints.
+"""Interface of a kind of link: elements between material points of blocks, whose forces follow those of the joints.
 
-A kind is a table of the case file, a record of arrays, and a compiled function:
+A kind is an input table, a record of arrays, and a compiled function:
 
     forces(arrays, bodies, like, like_rotation) -> work lost [J]
 
@@ -24,14 +24,14 @@ N_STATE = 3
 
 
 class LinkEnds(NamedTuple):
-    """Where a link was drawn: its two blocks, the second one maybe FIXED_POINT, and its ends."""
+    """Blocks and end points of a link as it was drawn, the second block maybe FIXED_POINT."""
 
     blocks: tuple[int, int]
     points: np.ndarray  # [m], (2, d)
 
 
 class Springs(NamedTuple):
-    """Springs that links are for small motions of their blocks, one behind another."""
+    """Linear springs that links are for small motions of their blocks, one behind another."""
 
     blocks: np.ndarray  # whose motion makes each longer, FIXED_POINT: none, (n, 2 or more) int64
     motion: np.ndarray  # how much longer each becomes per motion of each block, (n, 2 or more, n_dof)
@@ -39,7 +39,7 @@ class Springs(NamedTuple):
 
 
 class TensionSprings(NamedTuple):
-    """Springs that pull, and carry nothing when they are slack."""
+    """Springs that pull only, and carry nothing when they are slack."""
 
     springs: Springs
     first: np.ndarray  # force while nothing moved [N], (n,)
@@ -47,7 +47,7 @@ class TensionSprings(NamedTuple):
 
 
 class LinkReading(NamedTuple):
-    """What a monitor of a link reads: a weighted sum of one column of rows of its state."""
+    """Reading of a link by a monitor: a weighted sum of one column of rows of its state."""
 
     rows: tuple[int, ...]
     column: int  # PLASTIC, STRETCH or FORCE
@@ -55,7 +55,7 @@ class LinkReading(NamedTuple):
 
 
 class Outline(NamedTuple):
-    """Links as lines through points, one after the other."""
+    """Outlines of links as lines through points, one after the other."""
 
     counts: np.ndarray  # points of each, (n_links,) int64
     blocks: np.ndarray  # of each point, or FIXED_POINT, (n_points,) int64
@@ -64,70 +64,72 @@ class Outline(NamedTuple):
 
 
 class LinkArrays(Protocol):
-    """The elements of one kind, as its compiled function sees them; a NamedTuple of arrays."""
+    """Elements of one kind of link, as its compiled function sees them; a NamedTuple of arrays."""
 
     blocks: np.ndarray  # pairs of blocks that they hold together; the second may be FIXED_POINT, (n, 2) int64
     state: np.ndarray  # what changes, spring by spring: plastic elongation, elongation [m], force [N], (m, 3)
 
     @property
     def kind(self) -> str:
-        """Name in the registry."""
+        """Name of this kind of link in the registry."""
 
     @property
     def n_drawn(self) -> int:
-        """How many were drawn, one after the other in `Model.link_names`."""
+        """Number of links that were drawn, one after the other in `Model.link_names`."""
 
     def started(self, origin: np.ndarray) -> LinkArrays:
-        """A copy for a simulation that counts places from `origin`, with the forces of the start."""
+        """Copy the links for a simulation that counts places from `origin`, with the forces of the start."""
 
     def axial(self, bodies: Any = None) -> Springs:
-        """Springs along the elements where the blocks are now; None: where they were drawn."""
+        """Return springs along the elements where the blocks are now; None: where they were drawn."""
 
     def acting(self) -> np.ndarray:
-        """Which of these carry a force now, (n_springs,) bool."""
+        """Test which of the axial springs carry a force now, (n_springs,) bool."""
 
     def across(self, bodies: Any = None) -> Springs:
-        """Springs at least as stiff as what their forces make of them when they turn."""
+        """Return springs across the elements, at least as stiff as the geometric stiffness of their forces."""
 
     def turning(self, bodies: Any) -> np.ndarray:
-        """Geometric stiffness of the present forces, (n, 2·n_dof, 2·n_dof); rows as in `blocks`."""
+        """Compute the geometric stiffness of the present forces, (n, 2·n_dof, 2·n_dof); rows as in `blocks`."""
 
     def bounded(self) -> tuple[Springs, np.ndarray]:
-        """For limit analysis: forces where they were drawn, with the least and largest of each [N], (n, 2)."""
+        """Springs for limit analysis where they were drawn, with the least and largest force of each [N], (n, 2)."""
 
     def only_pulling(self) -> TensionSprings | None:
         """Springs that only pull between two blocks, where they were drawn; None where a link does more than that."""
 
     def yields(self) -> bool:
-        """Whether the forces of any have limits at which it stretches or slides for good."""
+        """Test whether any link has a force limit at which it stretches or slides for good."""
 
     def softest(self) -> float:
-        """Stiffness of the softest [N/m]."""
+        """Compute the least stiffness of any element [N/m]."""
 
     def energy(self) -> float:
-        """Elastic energy [J]."""
+        """Compute the elastic energy of all elements [J]."""
 
     def follow(self, motion: np.ndarray, bodies: Any) -> None:
-        """Elongations and forces after small displacements of all blocks, (n_blocks, n_dof), which grow evenly."""
+        """Update elongations and forces after small displacements of all blocks, (n_blocks, n_dof), which grow
+        evenly.
+        """
 
     def length(self, number: int) -> float:
-        """Of one as it was drawn [m]."""
+        """Return the length of one link as it was drawn [m]."""
 
     def reading(self, number: int, quantity: str, at: float) -> LinkReading:
-        """What a monitor of one reads, in its rows of `state`; at: how far along it [m]."""
+        """Return what a monitor of one link reads, in its rows of `state`; at: how far along it [m]."""
 
     def answer(self, number: int) -> dict[str, Any]:
-        """The state of one for summary.json."""
+        """Summarise the state of one link for summary.json."""
 
     def outline(self) -> Outline:
-        """All as lines through points of their blocks, with the forces of this instant."""
+        """Return all links as lines through points of their blocks, with the forces of this instant."""
 
     def words(self, number: int, ids: Sequence[str]) -> str:
-        """What one is, in a line for people; ids: of the blocks, that of a fixed point last."""
+        """Describe one link in a line of text; ids: of the blocks, that of a fixed point last."""
 
 
 class Link(NamedTuple):
-    """A registered kind of link."""
+    """Kind of link as it is registered: its table, arrays and compiled forces."""
 
     key: str  # [[key]] in the case file
     word: str  # what one is called, also without an id: word-1, word-2 ...
@@ -137,7 +139,7 @@ class Link(NamedTuple):
 
 
 def all_forces(kinds: Sequence[Callable]) -> Callable:
-    """One function for the links of a scene, of several kinds one after the other; () for none."""
+    """Combine the force functions of several kinds of link into one function; () for none."""
     if not kinds:
         return no_forces
     first, others = kinds[0], all_forces(kinds[1:])
@@ -145,7 +147,7 @@ def all_forces(kinds: Sequence[Callable]) -> Callable:
 
     @inline
     def link_forces(links, bodies, like, like_rotation):
-        """Adds the forces of all links on their blocks to `forces`; returns the work lost [J]."""
+        """Add the forces of all links on their blocks to `forces`; returns the work lost [J]."""
         lost = first(links[0], bodies, like, like_rotation)
         if more:
             lost += others(links[1:], bodies, like, like_rotation)
@@ -156,5 +158,5 @@ def all_forces(kinds: Sequence[Callable]) -> Callable:
 
 @always_inline
 def no_forces(links, bodies, like, like_rotation):
-    """Of a scene without links."""
+    """Return no work lost: the force function of a model without links."""
     return 0.0

@@ -9,7 +9,7 @@ from dem_cli.core.kernels.jit import overload
 
 
 def turned_arm(turns, row, arm):
-    """Arm of a material point when its block has turned: cosine and sine in 2D, a rotation matrix in 3D."""
+    """Turn the arm of a material point with its block: by cosine and sine in 2D, a rotation matrix in 3D."""
     if len(arm) == 2:
         return turns[row, 0] * arm[0] - turns[row, 1] * arm[1], turns[row, 1] * arm[0] + turns[row, 0] * arm[1]
     return tuple(turns[row, 3 * k] * arm[0] + turns[row, 3 * k + 1] * arm[1] + turns[row, 3 * k + 2] * arm[2]
@@ -31,7 +31,7 @@ def _turned_arm(turns, row, arm):
 
 
 def turned_arms(turns: np.ndarray, arms: np.ndarray) -> np.ndarray:
-    """The same of many points, (n, d); turns: of the block of each, as Bodies.turns has them."""
+    """Turn the arms of many material points, (n, d); turns: of the block of each, as Bodies.turns has them."""
     if arms.shape[1] == 2:
         cosine, sine = turns.T
         return np.column_stack([cosine * arms[:, 0] - sine * arms[:, 1], sine * arms[:, 0] + cosine * arms[:, 1]])
@@ -39,7 +39,7 @@ def turned_arms(turns: np.ndarray, arms: np.ndarray) -> np.ndarray:
 
 
 def cross_rows(arms: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """arm × direction, (n, r): motion of a point along a direction when its block turns."""
+    """Compute arm × direction, (n, r): motion of a point along a direction when its block turns."""
     if arms.shape[1] == 2:
         return (arms[:, 0] * along[:, 1] - arms[:, 1] * along[:, 0])[:, None]
     return np.cross(arms, along)

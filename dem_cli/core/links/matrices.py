@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def joined(springs: Iterable[Springs], n_dof: int) -> Springs:
-    """All of them, one behind another."""
+    """Concatenate springs of several kinds of link."""
     found = list(springs)
     many = max((one.blocks.shape[1] for one in found), default=2)
     nothing = Springs(np.zeros((0, many), np.int64), np.zeros((0, many, n_dof)), np.zeros(0))
@@ -25,7 +25,7 @@ def joined(springs: Iterable[Springs], n_dof: int) -> Springs:
 
 
 def _of(springs: Springs, many: int) -> Springs:
-    """The same with so many blocks for each."""
+    """Extend springs to so many blocks each, with fixed points."""
     more = many - springs.blocks.shape[1]
     if not more:
         return springs
@@ -34,7 +34,7 @@ def _of(springs: Springs, many: int) -> Springs:
 
 
 def elongations(springs: Springs, fixed: np.ndarray) -> csr_array:
-    """T of springs, (n, n_free); fixed: blocks that cannot move, (n_blocks,) bool."""
+    """Build the matrix T of elongations of springs; fixed: blocks that cannot move, (n_blocks,) bool."""
     from scipy.sparse import coo_array
 
     n, n_dof = len(springs.motion), springs.motion.shape[2]
@@ -46,7 +46,9 @@ def elongations(springs: Springs, fixed: np.ndarray) -> csr_array:
 
 
 def free_columns(blocks: np.ndarray, fixed: np.ndarray, n_dof: int) -> np.ndarray:
-    """Column of each degree of freedom of the blocks, −1: a support or a fixed point, (n, 2 or more, n_dof)."""
+    """Number the column of each degree of freedom of the blocks, −1: a support or a fixed point, (n, 2 or more,
+    n_dof).
+    """
     column = np.full(len(fixed) + 1, -1)  # the last one: of no block
     column[:-1][~fixed] = np.arange(int((~fixed).sum())) * n_dof
     first = column[blocks]
@@ -54,7 +56,7 @@ def free_columns(blocks: np.ndarray, fixed: np.ndarray, n_dof: int) -> np.ndarra
 
 
 def geometric(links: Iterable[LinkArrays], bodies: Any, fixed: np.ndarray, n_dof: int) -> csr_array:
-    """Geometric stiffness of the present forces of links, (n_free, n_free)."""
+    """Build the geometric stiffness matrix of the present forces of links, (n_free, n_free)."""
     from scipy.sparse import coo_array
 
     n_free = int((~fixed).sum()) * n_dof
@@ -69,7 +71,7 @@ def geometric(links: Iterable[LinkArrays], bodies: Any, fixed: np.ndarray, n_dof
 
 
 def gershgorin(springs: Springs, weights: np.ndarray, fixed: np.ndarray) -> np.ndarray:
-    """Σ_c k_c (|b_ci|/w_i) Σ_j |b_cj| w_j of springs, (n_blocks, n_dof); weights: w of all blocks, of that shape."""
+    """Gershgorin sums Σ_c k_c (|b_ci|/w_i) Σ_j |b_cj| w_j of springs, (n_blocks, n_dof), as are the weights w."""
     found = np.zeros_like(weights)
     rows = np.abs(springs.motion)  # 0 of fixed points, so that what block these point to is no matter
     reach = (rows * (weights * ~fixed[:, None])[springs.blocks]).sum(axis=(1, 2))
@@ -81,22 +83,22 @@ def gershgorin(springs: Springs, weights: np.ndarray, fixed: np.ndarray) -> np.n
 
 
 def elastic_energy_of_links(links: Iterable[LinkArrays]) -> float:
-    """In the springs of links [J]."""
+    """Compute the elastic energy in the springs of all links [J]."""
     return float(sum(link.energy() for link in links))
 
 
 def softest(links: Iterable[LinkArrays]) -> float:
-    """The least stiffness of any link [N/m]; infinite: there is none."""
+    """Compute the least stiffness of any link [N/m]; infinite where there are no links."""
     return min((link.softest() for link in links), default=np.inf)
 
 
 def stiffest(links: Iterable[LinkArrays]) -> float:
-    """The largest stiffness along any link [N/m]; 0: there is none."""
+    """Compute the largest stiffness along any link [N/m]; 0 where there are no links."""
     return max((float(link.axial().stiffness.max(initial=0.0)) for link in links), default=0.0)
 
 
 def reading_of(links: Iterable[LinkArrays], number: int, quantity: str, at: float) -> LinkReading:
-    """What a monitor reads of the link of this number among all, in the rows of all states one behind another."""
+    """Reading of one link by a monitor, by its number among all, in the rows of all states one behind another."""
     rows = 0
     for link in links:
         if number < link.n_drawn:
@@ -107,6 +109,6 @@ def reading_of(links: Iterable[LinkArrays], number: int, quantity: str, at: floa
 
 
 def each(links: Iterable[LinkArrays], names: Sequence[str]) -> Iterator[tuple[LinkArrays, int, str]]:
-    """All links of a scene: arrays of its kind, number in these, name (Model.link_names)."""
+    """Iterate over all links of a model: arrays of its kind, number in these, name (Model.link_names)."""
     numbered = [(link, number) for link in links for number in range(link.n_drawn)]
     yield from ((link, number, name) for (link, number), name in zip(numbered, names, strict=True))

@@ -1,4 +1,6 @@
-"""All kinds of links by their table, each loaded when a case has one. A new kind is one file and one line here."""
+"""Registry of all kinds of links by their table, each loaded when it is used. A new kind is one file and one line
+here.
+"""
 
 from __future__ import annotations
 

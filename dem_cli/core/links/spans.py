@@ -16,7 +16,7 @@ from dem_cli.core.links.material_points import cross_rows, turned_arms
 
 
 class Spans(NamedTuple):
-    """Spans as they were drawn."""
+    """Straight spans between material points, as they were drawn."""
 
     blocks: np.ndarray  # the second one may be FIXED_POINT, (n, 2) int64
     arms: np.ndarray  # of both ends from the centroids, undeformed; of a fixed point its place [m], (n, 2·d)
@@ -25,7 +25,7 @@ class Spans(NamedTuple):
     lengths: np.ndarray  # at the start [m], (n,)
 
     def started(self, origin: np.ndarray) -> Spans:
-        """A copy for a simulation that counts places from `origin`."""
+        """Copy the spans for a simulation that counts places from `origin`."""
         d, held = self.axes.shape[1], self.blocks[:, 1] == FIXED_POINT
         arms, starts = self.arms.copy(), self.starts.copy()
         arms[held, d:] -= origin
@@ -34,11 +34,11 @@ class Spans(NamedTuple):
         return self._replace(arms=arms, starts=starts)
 
     def ends(self, bodies: Any) -> np.ndarray:
-        """Where both ends are now [m], (n, 2, d)."""
+        """Compute the places of both ends of each span now [m], (n, 2, d)."""
         return self._placed(bodies)[0]
 
     def lines(self, bodies: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Unit vectors (n, d), lengths (n,) and arms (n, 2, d) now; bodies None: of the start."""
+        """Compute unit vectors (n, d), lengths (n,) and arms (n, 2, d) of spans now; bodies None: of the start."""
         n, d = self.axes.shape
         if bodies is None or not n:
             return self.axes, self.lengths, self.arms.reshape(n, 2, d)
@@ -48,7 +48,7 @@ class Spans(NamedTuple):
         return between / lengths[:, None], lengths, arms
 
     def _placed(self, bodies: Any) -> tuple[np.ndarray, np.ndarray]:
-        """Ends and arms now, (n, 2, d) each."""
+        """Compute ends and arms of spans now, (n, 2, d) each."""
         n, d = self.axes.shape
         held, arms = self.blocks[:, 1] == FIXED_POINT, self.arms.reshape(n, 2, d).copy()
         for side in (0, 1):
@@ -60,7 +60,7 @@ class Spans(NamedTuple):
         return ends, arms
 
     def motion(self, along: np.ndarray, arms: np.ndarray) -> np.ndarray:
-        """How far the second end goes along a direction against the first, per motion of the blocks, (n, 2, n_dof)."""
+        """Compute the relative motion of the ends along a direction, per motion of the blocks, (n, 2, n_dof)."""
         sides = []
         for side, sign in ((0, -1.0), (1, 1.0)):
             row = sign * np.column_stack([along, cross_rows(arms[:, side], along)])
@@ -69,7 +69,7 @@ class Spans(NamedTuple):
         return np.stack(sides, axis=1)
 
     def sideways(self, bodies: Any) -> np.ndarray:
-        """Motion of the second end against the first across the span, (d, n, 2, n_dof).
+        """Compute the relative motion of the ends across each span, (d, n, 2, n_dof).
 
         Along the d − 1 directions across an axis: those of the unit vectors that are left when the axis is taken out,
         all of them, as more stiffness than there is does no harm.
@@ -79,7 +79,8 @@ class Spans(NamedTuple):
         return np.stack([self.motion(np.eye(d)[k] - axes * axes[:, k : k + 1], arms) for k in range(d)])
 
     def turning(self, force: np.ndarray, bodies: Any) -> np.ndarray:
-        """Geometric stiffness of axial forces, tension positive [N], (n,): N times the second derivatives of lengths.
+        """Compute the geometric stiffness of axial forces, tension positive [N], (n,): N times the second derivatives
+        of lengths.
 
         Across: (1 − n nᵀ)/L of the relative motion of the ends; a block that turns by θ takes the end at its arm r
         back by θ × (θ × r)/2. (n, 2·n_dof, 2·n_dof), first block first.
@@ -101,7 +102,7 @@ class Spans(NamedTuple):
 
 
 def spans(ends: Sequence[LinkEnds], centroids: np.ndarray) -> Spans:
-    """Spans of blocks that lie where they are; centroids: of the blocks [m], (n_blocks, d).
+    """Build the spans of blocks that lie where they are; centroids: of the blocks [m], (n_blocks, d).
 
     The points of `ends` are counted from the centroids of their blocks, that of a fixed point from nowhere.
     """

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class TensionPoints(NamedTuple):
-    """Ties of a structure; forces and lengths in the units of who made them."""
+    """Ties of a structure as points that only pull; forces and lengths in the units of who made them."""
 
     stiffness: np.ndarray  # k, (n,)
     first: np.ndarray  # force before anything moved, t₀, (n,)
@@ -31,7 +31,7 @@ class TensionPoints(NamedTuple):
     columns: np.ndarray  # free degrees of freedom of these, −1: held, (n, 2, n_dof)
 
     def scaled(self, weight: float, unit: float, columns: np.ndarray) -> TensionPoints:
-        """Ties with forces over a weight, lengths over a unit, and degrees of freedom over `columns`, (n_free,)."""
+        """Scale ties: forces over a weight, lengths over a unit, degrees of freedom over `columns`, (n_free,)."""
         here = np.where(self.columns < 0, 0.0, np.append(columns, 0.0)[self.columns])
         return self._replace(
             stiffness=self.stiffness * unit / weight,
@@ -42,35 +42,35 @@ class TensionPoints(NamedTuple):
         )
 
     def gaps(self, plastic: np.ndarray) -> np.ndarray:
-        """Openings of the points where nothing moved, (n,); plastic: e_p."""
+        """Compute the openings of the tie points without motion, (n,); plastic: e_p."""
         return plastic - self.first / self.stiffness
 
     def elastic_force(self, displacements: np.ndarray, plastic: np.ndarray) -> np.ndarray:
-        """Force of each, were it never slack and without limit, (n,)."""
+        """Compute the force of each tie as if it were never slack and had no limit, (n,)."""
         return self.stiffness * (self.elongation @ displacements - plastic) + self.first
 
     def yielding(self, displacements: np.ndarray, plastic: np.ndarray) -> np.ndarray:
-        """Which are stretched beyond their largest force, (n,) bool."""
+        """Test which ties are stretched beyond their largest force, (n,) bool."""
         return self.elastic_force(displacements, plastic) > self.most
 
     def stretched(self, displacements: np.ndarray, plastic: np.ndarray) -> np.ndarray:
-        """The plastic elongations after an increment to these displacements, (n,)."""
+        """Compute the plastic elongations after an increment to these displacements, (n,)."""
         beyond = self.elastic_force(displacements, plastic) - self.most
         return plastic + np.maximum(beyond, 0.0) / self.stiffness
 
     @property
     def longest_elastic(self) -> float:
-        """The longest way of any from its first force to its largest, where that has an end."""
+        """Longest elastic elongation of any tie, from its first force to its largest, where that is finite."""
         ends = np.isfinite(self.most)
         return float(((self.most - self.first) / self.stiffness)[ends].max(initial=0.0))
 
     def dead(self, yielding: np.ndarray) -> np.ndarray:
-        """Forces on the free degrees of freedom of the ties that yield, (n_free,)."""
+        """Compute the forces of yielding ties on the free degrees of freedom, (n_free,)."""
         return -(self.elongation.T @ np.where(yielding, self.most, 0.0))
 
 
 def tension_points(links: Iterable[LinkArrays], fixed: np.ndarray, held: np.ndarray) -> TensionPoints | None:
-    """Links as points, in SI units; None where one of them is more than a tie that only pulls.
+    """Convert links to tension points, in SI units; None where one of them is more than a tie that only pulls.
 
     fixed: blocks that cannot move, (n_blocks,) bool; held: motions that loads do not change, (n_blocks, n_dof) bool.
     """

@@ -1,4 +1,4 @@
-"""[[tie]]: ties and anchors: rods and cables between points of two blocks, or of a block and a fixed point.
+"""Ties and anchors ([[tie]]): rods and cables between points of two blocks, or of a block and a fixed point.
 
     N = k (ΔL + N0/k − p),   0 ≤ N ≤ Ny   (−Ny ≤ N where the rod also takes compression)
 
@@ -78,7 +78,7 @@ class Tie(Parameters):
     )
 
     def check(self) -> None:
-        """It has one stiffness, one limit, two ends, and a prestress below the limit."""
+        """Check that a tie has one stiffness, one limit, two ends, and a prestress below the limit."""
         super().check()
         if self.stiffness is None and (self.area is None or self.young is None):
             missing = "area" if self.area is None else "young"
@@ -102,13 +102,13 @@ class Tie(Parameters):
 
     @property
     def largest(self) -> float:
-        """Its largest force [N]."""
+        """Largest force of the tie [N]."""
         if self.yield_stress is not None and self.area is not None:
             return self.yield_stress * self.area
         return math.inf if self.yield_force is None else self.yield_force
 
     def stiffness_over(self, length: float) -> float:
-        """Force per elongation [N/m]."""
+        """Compute force per elongation [N/m] of a tie of this length."""
         if self.stiffness is not None:
             return self.stiffness
         assert self.area is not None
@@ -117,7 +117,7 @@ class Tie(Parameters):
 
 
 class Ties(NamedTuple):
-    """All ties of a scene, as the stepping loop sees them."""
+    """All ties of a model, as the stepping loop sees them."""
 
     blocks: np.ndarray  # the second one may be FIXED_POINT, (n, 2) int64
     arms: np.ndarray  # of both ends from the centroids, undeformed; of a fixed point its place [m], (n, 2·d)
@@ -131,37 +131,38 @@ class Ties(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """Name in the registry."""
+        """Name of this kind of link in the registry."""
         return TIE.key
 
     @property
     def spans(self) -> Spans:
-        """From end to end."""
+        """Spans of ties from end to end."""
         return Spans(self.blocks, self.arms, self.axes, self.starts, self.lengths)
 
     @property
     def n_drawn(self) -> int:
-        """How many were drawn."""
+        """Number of ties that were drawn."""
         return len(self.blocks)
 
     def started(self, origin: np.ndarray) -> Ties:
-        """A copy for a simulation that counts places from `origin`, with the forces of the start."""
+        """Copy the ties for a simulation that counts places from `origin`, with the forces of the start."""
         state = np.zeros((len(self.blocks), N_STATE))
         state[:, FORCE] = self.prestress
         return self._replace(**self.spans.started(origin)._asdict(), state=state)
 
     def axial(self, bodies: Any = None) -> Springs:
-        """Springs along the ties where the blocks are now; None, and with geometry of the start: as they were drawn."""
+        """Return springs along the ties where the blocks are now; None, and with fixed geometry: as they were drawn."""
         axes, _, arms = self.spans.lines(bodies)
         return Springs(self.blocks, self.spans.motion(axes, arms), self.stiffness)
 
     def acting(self) -> np.ndarray:
-        """Which of these carry a force now, (n,) bool."""
+        """Test which ties carry a force now, (n,) bool."""
         return self.state[:, FORCE] != 0.0
 
     def across(self, bodies: Any = None) -> Springs:
-        """Springs across the ties: a taut tie of force N that turns holds back with N/L at its ends, and with the
-        moment N times the arm of each."""
+        """Return springs across the ties: a taut tie of force N that turns holds back with N/L at its ends, and with
+        the moment N times the arm of each.
+        """
         _, lengths, arms = self.spans.lines(bodies)
         taut = np.maximum(np.maximum(self.prestress, self.state[:, FORCE]), 0.0)
         inverse = 1.0 / lengths
@@ -176,33 +177,35 @@ class Ties(NamedTuple):
         )
 
     def turning(self, bodies: Any) -> np.ndarray:
-        """Geometric stiffness of the present forces (`Spans.turning`)."""
+        """Compute the geometric stiffness of the present tie forces (`Spans.turning`)."""
         return self.spans.turning(self.state[:, FORCE], bodies)
 
     def bounded(self) -> tuple[Springs, np.ndarray]:
-        """For limit analysis: ties as they were drawn, least and largest force of each [N]."""
+        """Return ties for limit analysis as they were drawn, with the least and largest force of each [N]."""
         return self.axial(), self.limits
 
     def only_pulling(self) -> TensionSprings | None:
-        """They are, unless one takes compression too."""
+        """Return ties as springs that only pull; None where one takes compression too."""
         if (self.limits[:, 0] < 0.0).any():
             return None
         return TensionSprings(self.axial(), self.prestress, self.limits[:, 1])
 
     def yields(self) -> bool:
-        """Whether the force of any has a largest value."""
+        """Test whether the force of any tie has a largest value."""
         return bool(np.isfinite(self.limits[:, 1]).any())
 
     def softest(self) -> float:
-        """Stiffness of the softest [N/m]."""
+        """Compute the least stiffness of any tie [N/m]."""
         return float(self.stiffness.min(initial=np.inf))
 
     def energy(self) -> float:
-        """In its springs [J]."""
+        """Compute the elastic energy in the springs of all ties [J]."""
         return 0.5 * float((self.state[:, FORCE] ** 2 / self.stiffness).sum())
 
     def follow(self, motion: np.ndarray, bodies: Any) -> None:
-        """Elongations and forces after small displacements of all blocks, (n_blocks, n_dof), which grow evenly."""
+        """Update elongations and forces of ties after small displacements of all blocks, (n_blocks, n_dof), which grow
+        evenly.
+        """
         springs, (least, most) = self.axial(bodies), self.limits.T
         self.state[:, STRETCH] += (springs.motion * motion[springs.blocks]).sum(axis=(1, 2))
         force = springs.stiffness * (self.state[:, STRETCH] - self.state[:, PLASTIC]) + self.prestress
@@ -211,26 +214,26 @@ class Ties(NamedTuple):
         self.state[:, FORCE] = np.clip(force, least, most)
 
     def length(self, number: int) -> float:
-        """Of one as it was drawn [m]."""
+        """Return the length of one tie as it was drawn [m]."""
         return float(self.lengths[number])
 
     def reading(self, number: int, quantity: str, at: float) -> LinkReading:
-        """Force or elongation of one; `at` is no matter."""
+        """Return force or elongation of one tie for a monitor; `at` does not matter."""
         return LinkReading((number,), FORCE if quantity == "force" else STRETCH, (1.0,))
 
     def answer(self, number: int) -> dict[str, Any]:
-        """Force, elongation and whether it yielded, of one."""
+        """Summarise one tie: force, elongation and whether it yielded."""
         plastic, stretch, force = self.state[number].tolist()
         return {"force": force, "elongation": stretch, "yielded": plastic != 0.0}
 
     def outline(self) -> Outline:
-        """From end to end."""
+        """Return ties as lines from end to end."""
         n, d = self.axes.shape
         forces = np.repeat(self.state[:, FORCE], 2)
         return Outline(np.full(n, 2), self.blocks.ravel(), self.arms.reshape(2 * n, d), forces)
 
     def words(self, number: int, ids: Sequence[str]) -> str:
-        """What one is, in a line; ids: of the blocks, that of a fixed point last."""
+        """Describe one tie in a line of text; ids: of the blocks, that of a fixed point last."""
         (a, b), (least, most), held = self.blocks[number], self.limits[number], float(self.state[number, FORCE])
         limit = f"up to {most:.4g} N" if np.isfinite(most) else "without limit"
         both = "tension and compression" if least < 0.0 else "tension"
@@ -241,7 +244,7 @@ class Ties(NamedTuple):
 
 
 def ties(tables: Sequence[Tie], ends: Sequence[LinkEnds], centroids: np.ndarray) -> Ties:
-    """The ties of a case whose blocks lie where they are; ends, centroids: as for `spans`."""
+    """Build the ties of a model whose blocks lie where they are; ends, centroids: as for `spans`."""
     found = spans(ends, centroids)
     most = np.array([table.largest for table in tables])
     least = np.array([-table.largest if table.compression else 0.0 for table in tables])
@@ -253,11 +256,11 @@ def ties(tables: Sequence[Tie], ends: Sequence[LinkEnds], centroids: np.ndarray)
 
 
 def make_tie_forces(moves: bool) -> Callable:
-    """The loop over ties; moves: along the line through their ends now, else along that of the start."""
+    """Make the loop over ties; moves: along the line through their ends now, else along that of the start."""
 
     @inline
     def tie_forces(ties, bodies, like, like_rotation):
-        """Adds the forces of all ties on their blocks to `forces`; returns the work lost by yielding [J]."""
+        """Add the forces of all ties on their blocks to `forces`; returns the work lost by yielding [J]."""
         blocks, arms, starts, axes, state = ties.blocks, ties.arms, ties.starts, ties.axes, ties.state
         positions, orientations, forces = bodies.positions, bodies.orientations, bodies.forces
         d = len(like)

@@ -1,1 +1,1 @@
-"""Compilation of kernels, as far as it is not as numba has it."""
+"""Compilation of kernels by numba, and what this package adds to it."""

@@ -1,4 +1,4 @@
-"""Atomic addition and reading of what several threads share, and giving a core away, for compiled code."""
+"""Atomic operations for compiled code: addition and reading of what threads share, and yielding a processor core."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _YIELD = "SwitchToThread" if os.name == "nt" else "sched_yield"
 
 
 def _place(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    """Where an entry of an array is."""
+    """Compute the address of an entry of an array."""
     array = make_array(signature.args[0])(context, builder, arguments[0])
     return cgutils.gep(builder, array.data, arguments[1])
 
 
 @intrinsic
 def add(typing_context: Any, array: Any, index: Any, amount: Any) -> Any:
-    """array[index] += amount, of integers; returns what was there before."""
+    """Add to array[index] atomically, for integers; returns the value before."""
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.atomic_rmw("add", _place(context, builder, signature, arguments), arguments[2], "seq_cst")
@@ -34,7 +34,7 @@ def add(typing_context: Any, array: Any, index: Any, amount: Any) -> Any:
 
 @intrinsic
 def seen(typing_context: Any, array: Any, index: Any) -> Any:
-    """array[index], of integers."""
+    """Read array[index] atomically, for integers."""
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.load_atomic(_place(context, builder, signature, arguments), "seq_cst", 8)
@@ -44,7 +44,7 @@ def seen(typing_context: Any, array: Any, index: Any) -> Any:
 
 @intrinsic
 def give_core_away(typing_context: Any) -> Any:
-    """The operating system may run somebody else here."""
+    """Yield the processor core to another thread."""
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         function = cgutils.get_or_insert_function(

@@ -14,7 +14,7 @@ __all__ = ["BITS"]
 
 @intrinsic
 def lowest(typing_context: Any, bits: Any) -> Any:
-    """Place of the lowest bit that is set; there is one."""
+    """Find the place of the lowest set bit of a whole number that is not zero."""
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.cttz(arguments[0], cgutils.true_bit)

@@ -1,4 +1,5 @@
-"""Cache folder of compiled kernels, named by what their machine code depends on; found without loading numba.
+"""Cache folder of compiled kernels, named by a hash of all that their machine code depends on; found without loading
+numba.
 
 It carries the hash of all sources that are compiled, because numba looks only at the file of the decorated function:
 a callee edited elsewhere, or a reordered record, would otherwise go on running old machine code.
@@ -31,7 +32,7 @@ _ELSEWHERE = (
 
 
 def _compiler() -> bytes:
-    """What says which numba and LLVM there are."""
+    """Return bytes that identify the versions of numba and LLVM."""
     found = b""
     for package in ("numba", "llvmlite"):
         spec = find_spec(package)
@@ -48,7 +49,7 @@ def _compiler() -> bytes:
 
 
 def compiled_sources() -> list[Path]:
-    """Files with functions that are compiled."""
+    """List the source files with functions that are compiled."""
     found = [source for folder in _ROOMS for source in sorted((_ROOT / folder).rglob("*.py"))]
     return found + [_ROOT / name for name in _ELSEWHERE]
 
@@ -84,7 +85,7 @@ def _place(home: str, source_hash: str) -> Path:
 
 
 def _of_nobody_else(folder: Path, uid: int) -> bool:
-    """Whether a folder in a place where all may write, made if it is missing, is of this user alone."""
+    """Test whether a folder in a shared place, made if it is missing, belongs to this user alone."""
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
         found = folder.lstat()
@@ -98,23 +99,23 @@ _source_hash_of_process = cache(_source_hash)
 
 
 def cache_folder() -> Path:
-    """Where compiled code is kept: $DEM_CACHE_DIR, else the user's cache, else a temporary folder."""
+    """Return the folder of compiled code: $DEM_CACHE_DIR, else the user's cache, else a temporary folder."""
     home = os.environ.get("DEM_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
     return _place(str(home), _source_hash_of_process())
 
 
 def cache_is_cold() -> bool:
-    """True where nothing was compiled yet for these sources."""
+    """Test whether nothing was compiled yet for these sources."""
     return next(cache_folder().rglob("*.nbi"), None) is None
 
 
 def fingerprint(function: Callable) -> str:
-    """Of what a kernel is made of: its code, what it closes over, and so on; the same in every process."""
+    """Hash the code of a kernel and all that it closes over; the same in every process."""
     return hashlib.sha256(repr(_made_of(function)).encode()).hexdigest()
 
 
 def _made_of(part: Any) -> object:
-    """What tells a function, its code or a value in a closure from others."""
+    """Reduce a function, its code or a value in a closure to plain values that identify it."""
     if isinstance(part, FunctionType):
         held = tuple(_made_of(cell.cell_contents) for cell in part.__closure__ or ())
         return part.__module__, part.__qualname__, _made_of(part.__code__), held

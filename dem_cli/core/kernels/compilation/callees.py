@@ -1,4 +1,4 @@
-"""Compilation of callees, functions that only compiled functions call: LLVM and the cache get them within these.
+"""Compilation of callees, functions that only compiled functions call: they are kept as LLVM code inside their callers.
 
 Numba makes of each of them a wrapper for C, optimises it and turns it into machine code that nothing ever runs: the
 kernel takes its LLVM code in, optimises it where it stands and is all that is executed. A kernel has up to a hundred.
@@ -26,21 +26,21 @@ __all__ = ["CALLEE", "KERNEL", "CalleeCompiler"]
 
 
 class _NoProcess:
-    """Where the machine code of a callee would be: numba writes the address of its environment there."""
+    """Dummy memory for the machine code of a callee: numba writes the address of its environment there."""
 
     @staticmethod
     def set_env(name: str, environment: object) -> None:
-        """Nothing to write to."""
+        """Ignore the environment: a callee has no machine code."""
 
 
 class CalleeLibrary(JITCodeLibrary):
-    """LLVM code of a callee with what it calls, as it was written: whoever takes it in optimises it."""
+    """LLVM code of a callee with its own callees, not optimised: whoever takes it in optimises it."""
 
     def _optimize_functions(self, ll_module: Any) -> None:
         ll_module.data_layout = self._codegen._data_layout
 
     def finalize(self) -> None:
-        """Takes in what it calls; nothing may be added any more."""
+        """Link the code of all callees; nothing may be added any more."""
         for library in dict.fromkeys(self._linking_libraries):
             self._reload_init.update(library._reload_init)
             self._final_module.link_in(library._get_module_for_linking(), preserve=True)
@@ -48,19 +48,19 @@ class CalleeLibrary(JITCodeLibrary):
         self._finalized = True
 
     def get_pointer_to_function(self, name: str) -> int:
-        """There is none."""
+        """Return 0: a callee has no address."""
         self._ensure_finalized()
         return 0
 
     @property
     def codegen(self) -> Any:
-        """What would run it."""
+        """Return dummy memory in the place of the engine that would run the code."""
         return _NoProcess
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class CalleePass(FunctionPass):
-    """Gives a function a library that makes no machine code."""
+    """Compiler pass that gives a callee a library without machine code."""
 
     _name = "callee_library"
     library: type[JITCodeLibrary] = CalleeLibrary
@@ -69,14 +69,14 @@ class CalleePass(FunctionPass):
         FunctionPass.__init__(self)
 
     def run_pass(self, state: Any) -> bool:
-        """Lowering takes the library that it finds."""
+        """Set the library that lowering uses."""
         state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
         return True
 
 
 class KernelLibrary(JITCodeLibrary):
-    """Code of a kernel, optimised with all that it calls: not function by function before."""
+    """Code of a kernel, optimised together with all that it calls."""
 
     def _optimize_functions(self, ll_module: Any) -> None:
         ll_module.data_layout = self._codegen._data_layout
@@ -84,7 +84,7 @@ class KernelLibrary(JITCodeLibrary):
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class KernelPass(CalleePass):
-    """Gives a kernel its library."""
+    """Compiler pass that gives a kernel its library."""
 
     _name = "kernel_library"
     library = KernelLibrary
@@ -100,12 +100,12 @@ UNUSED = (  # kernels have no `with`, no functions inside of functions, no expre
 
 
 class CalleeCompiler(Compiler):
-    """Numba's own passes but those that nothing here needs, with a library for callees."""
+    """Compiler of callees: numba's own passes without those that nothing here needs."""
 
     library: type[FunctionPass] = CalleePass
 
     def define_pipelines(self) -> list[PassManager]:
-        """One of them, as numba has it."""
+        """Define the pipeline of passes for callees, as numba asks for it."""
         (passes,) = super().define_pipelines()
         passes.passes = [(step, word) for step, word in passes.passes if step not in UNUSED]
         passes.add_pass_after(self.library, NoPythonSupportedFeatureValidation)
@@ -114,12 +114,12 @@ class CalleeCompiler(Compiler):
 
 
 class KernelCompiler(CalleeCompiler):
-    """The same for kernels, which get an entry."""
+    """Compiler of kernels, which get an entry that runs without numba."""
 
     library = KernelPass
 
     def define_pipelines(self) -> list[PassManager]:
-        """One of them."""
+        """Define the pipeline of passes for kernels."""
         (passes,) = super().define_pipelines()
         swapped = [(KernelLowering if step is NativeLowering else step, word) for step, word in passes.passes]
         passes.passes = swapped

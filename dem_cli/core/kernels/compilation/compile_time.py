@@ -1,4 +1,4 @@
-"""Compile time of kernels: who asks is told when one is compiled, and how long it took; without loading numba."""
+"""Compile time of kernels: observers of when one is compiled, and how long it took; without loading numba."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["LISTENING", "Compilation"]
 
 
 class Compilation:
-    """Compilation that really happens, not what comes from the cache: told when it begins, its seconds counted.
+    """Observer of compilation that really happens, not of what comes from the cache: it counts the seconds.
 
     `with Compilation(tell).heard():` listens; `tell` is called once for each kernel, with what it calls.
     """
@@ -20,7 +20,7 @@ class Compilation:
 
     @contextmanager
     def heard(self) -> Iterator[None]:
-        """Listens inside of it."""
+        """Listen to compilations within a `with` block."""
         LISTENING.append(self)
         try:
             yield
@@ -28,12 +28,12 @@ class Compilation:
             LISTENING.remove(self)
 
     def begins(self) -> None:
-        """Its time counts, and that of what it calls within it."""
+        """Start the clock of one compilation, with all that is compiled within it."""
         self._begun = time.perf_counter()
         self.tell()
 
     def ends(self) -> None:
-        """Adds its time."""
+        """Stop the clock and add the time."""
         self.seconds += time.perf_counter() - self._begun
 
 

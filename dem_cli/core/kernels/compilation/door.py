@@ -1,4 +1,4 @@
-"""The way to numba: what it is told of functions, before or after it is there, and who compiles kernels."""
+"""Access to numba: declaration of functions before or after it is loaded, and choice of the way to compile kernels."""
 
 from __future__ import annotations
 
@@ -19,12 +19,13 @@ _ROOM = __name__.rpartition(".")[0]
 
 
 def literal_unroll(links: tuple) -> tuple:
-    """For loops over tuples of records of several types."""
+    """Loop over tuples of records of several types, as numba's function of this name."""
     return links
 
 
 class Door:
-    """What was declared, the way that kernels are compiled once there is one, and whether they run without numba.
+    """State of kernel compilation: declared functions, the way to compile once one is chosen, and whether numba is
+    bypassed.
 
     way: the module machine_code.py or a PlainNumba; None while numba was not needed.
     """
@@ -38,7 +39,7 @@ class Door:
         self._told = False  # whether it was
 
     def declare(self, *declaration: Any) -> None:
-        """Tells numba of a function, at once or when it comes."""
+        """Declare a function to numba, at once or when numba is loaded."""
         with self.lock:
             self._declared.append(declaration)
             if self._copies is not None:  # the module of this one may be half loaded
@@ -47,12 +48,12 @@ class Door:
                 self._guarded(self._tell, *declaration)
 
     def kept(self, function: Callable, arguments: tuple[Any, ...]) -> Callable | None:
-        """The function as machine code from an earlier process, for such arguments, without numba."""
+        """Return machine code of the function from an earlier process, for such arguments, without numba."""
         with self.lock:
             return self._guarded(kept_kernel, function, arguments) if SWITCH.own_way() else None
 
     def compiled(self, function: Callable) -> tuple[Any, Any]:
-        """The function as machine code, and the way that it was made; loads numba."""
+        """Compile the function, and return the way that it was made; loads numba."""
         with self.lock:
             if self.way is None:
                 self._guarded(self._open)
@@ -66,7 +67,7 @@ class Door:
             return made, self.way
 
     def fails(self, way: Any, made: Any, arguments: tuple[Any, ...], error: Exception) -> bool:
-        """Whether a call of what was made one way was to be compiled and could not be: then there is another way."""
+        """Test whether an error of a call comes from its compilation; if so, plain numba compiles from now on."""
         with self.lock:
             if self._is_plain(way) or isinstance(error, DemError | MemoryError):
                 return False
@@ -76,7 +77,7 @@ class Door:
             return True
 
     def _guarded(self, work: Callable, *given: Any) -> Any:
-        """What some work of the own way gives; None where it is surprised, after which the other one is open."""
+        """Run some work of the package's own way; None where it fails, after which plain numba is used."""
         try:
             return work(*given)
         except (DemError, MemoryError):
@@ -97,7 +98,7 @@ class Door:
             self._open_plain()
 
     def _open(self) -> None:
-        """Loads numba, and tells it what was declared."""
+        """Load numba, and declare all functions to it."""
         if not SWITCH.own_way():
             self._open_plain()
             return
@@ -129,7 +130,7 @@ class Door:
                 self._tell(*declaration)
 
     def _tell_copies(self) -> None:
-        """Tells numba of copies of what was declared up to now."""
+        """Declare to numba copies of the functions declared up to now."""
         if self._copies is not None:
             self._copies.include(each for _, each, _ in self._untold)
             while self._untold:

@@ -1,4 +1,4 @@
-"""Entries of kernels: functions by which compiled kernels are called without numba, and what of them may be kept.
+"""Entries of kernels: functions by which compiled kernels are called without numba, and which of them may be kept.
 
 An entry takes one address, that of a frame: a word for errors, then the arguments as numba lays them out, one after the
 other. It is compiled with its kernel, into the same object code, which kept_code.py keeps and calls.
@@ -34,7 +34,7 @@ _NAMES = re.compile(r'@"?([\w.$]+)"?')
 
 
 def kind_of_type(kind: types.Type) -> str | None:
-    """As `kinds.kind_of` says it of a value; None where there is no such value."""
+    """Name the kind of a numba type as `kinds.kind_of` does for a value; None where there is no such kind."""
     if isinstance(kind, types.Array):
         if kind.layout != "C" or not kind.aligned:
             return None
@@ -52,17 +52,17 @@ def kind_of_type(kind: types.Type) -> str | None:
 
 
 def _hindrance(of: Any) -> str:
-    """Why a function gets no entry, of what it takes and returns; nothing where it gets one."""
+    """Explain why a function gets no entry, by its arguments and result; empty where it gets one."""
     if of.restype not in _RESULTS:
         return f"it returns {of.restype}"
     return next((f"{_TAKES}{each}" for each in of.argtypes if kind_of_type(each) is None), "")
 
 
 class KernelLower(Lower):
-    """Lowering of a kernel, which gets an entry in the place of numba's own function for C."""
+    """Lowering of a kernel, with an entry in the place of numba's own function for C."""
 
     def create_cfunc_wrapper(self) -> None:
-        """Adds the entry."""
+        """Add the entry of the kernel."""
         of, context = self.fndesc, self.context
         if _hindrance(of) or not may_be_kept():
             return
@@ -90,18 +90,19 @@ class KernelLower(Lower):
 
 @register_pass(mutates_CFG=True, analysis_only=False)
 class KernelLowering(NativeLowering):
-    """Numba's own, with an entry."""
+    """Compiler pass: numba's own lowering, with an entry."""
 
     _name = "kernel_lowering"
 
     @property
     def lowering_class(self) -> type[Lower]:
-        """What lowers."""
+        """Class that lowers kernels."""
         return KernelLower
 
 
 def keep_compiled(function: Callable, of: Any, code: bytes, module: Any) -> None:
-    """Keeps what numba compiled, if it can run without numba: it neither allocates nor raises. Says it where it cannot.
+    """Keep the object code of a kernel on disk, if it can run without numba: it neither allocates nor raises. Says it
+    where it cannot.
 
     of: numba's description of the function; code, module: of its object code, and LLVM's module that this was made of.
     """
@@ -124,7 +125,7 @@ def keep_compiled(function: Callable, of: Any, code: bytes, module: Any) -> None
 
 
 def _called(text: str, entry: str) -> set[str]:
-    """Names of all that a function names, and what that names, in the text of an LLVM module."""
+    """Find the names that a function of an LLVM module uses, directly or through others."""
     bodies: dict[str, set[str]] = {}
     for part in re.split(r"^define ", text, flags=re.MULTILINE)[1:]:
         name, *names = _NAMES.findall(part[: part.find("\n}")])
@@ -139,7 +140,7 @@ def _called(text: str, entry: str) -> set[str]:
 
 
 def _undefined(code: bytes) -> set[str]:
-    """Names that object code asks others for: symbols of no section in an ELF file of 64 bits."""
+    """List undefined symbols of object code: symbols of no section in an ELF file of 64 bits."""
     assert (code[:5], sys.byteorder) == (b"\x7fELF\x02", "little")
     (sections,), (size, count) = struct.unpack_from("<Q", code, 40), struct.unpack_from("<HH", code, 58)
     table = [struct.unpack_from("<IIQQQQIIQQ", code, sections + size * k) for k in range(count)]

@@ -1,4 +1,4 @@
-"""Copies of functions that name one another, so that numba takes each of them for one that it has never seen.
+"""Copies of functions that name one another, so that numba takes each for one that it has never seen.
 
 What it was told of a function, it cannot be told otherwise. Where the own way fails after it has told numba of the
 functions that kernels call, copies of them are declared, and copies of kernels that call these are compiled.
@@ -14,7 +14,7 @@ __all__ = ["FunctionCopies"]
 
 
 class FunctionCopies:
-    """The same functions once more: wherever one names another, in its module or closure, it names the copy."""
+    """Copies of functions: wherever one names another, in its module or closure, it names the copy."""
 
     def __init__(self) -> None:
         self._modules: set[int] = set()  # ids of the names in each module whose functions are copied
@@ -22,11 +22,11 @@ class FunctionCopies:
         self._copies: dict[int, tuple[FunctionType, FunctionType]] = {}  # each with its original, which keeps its id
 
     def include(self, declared: Iterable[Any]) -> None:
-        """Functions of the modules of these are copied, which have to be loaded to their end by now."""
+        """Include functions of the modules of these, which have to be loaded to their end by now."""
         self._modules |= {id(each.__globals__) for each in declared}
 
     def of(self, function: Any) -> Any:
-        """The copy of a function; anything else as it is."""
+        """Return the copy of a function; anything else as it is."""
         if isinstance(function, tuple) and type(function) is tuple:
             return tuple(map(self.of, function))
         if not isinstance(function, FunctionType):

@@ -1,4 +1,4 @@
-"""Kept machine code: kernels from the disk that run without numba, which takes longer to load than small cases take.
+"""Kept machine code: kernels loaded from disk that run without numba, which takes longer to load than small cases take.
 
 What numba compiles is object code with a function for Python, which needs numba around it, and the kernel itself. That
 takes numbers and addresses, and calls nothing but functions of C: LLVM links it alone, and it is called by ctypes with
@@ -35,7 +35,7 @@ _engines: list[Any] = []  # of LLVM, which own the code that runs
 
 
 class Header(NamedTuple):
-    """What a file says of the code in it."""
+    """Header of a file of machine code."""
 
     kinds: list[str]  # of the arguments
     result: str  # "i", "d", "b" or "" (nothing)
@@ -60,7 +60,7 @@ class _Frame:
 
 
 class KeptKernel:
-    """A kernel for arguments of some kinds, as it was compiled before. Threads may call it at the same time."""
+    """Kernel for arguments of some kinds, compiled in an earlier process. Threads may call it at the same time."""
 
     def __init__(self, header: Header, function: Callable[[int], Any]) -> None:
         self.kinds, self._function, self._frames = header.kinds, function, dict[int, _Frame]()
@@ -70,7 +70,7 @@ class KeptKernel:
             self._size += words_of_kind(kind)
 
     def __call__(self, *arguments: Any) -> Any:
-        """Runs it. Raises OtherTypes where it was compiled for other ones."""
+        """Run the kernel. Raises OtherTypes where it was compiled for other ones."""
         thread = get_ident()
         frame = self._frames.get(thread)
         if frame is None:
@@ -90,7 +90,9 @@ class KeptKernel:
         return self
 
     def _put(self, frame: _Frame, place: int, value: Any) -> None:
-        """Another argument than in the last call of this thread. What it is made of stays where it is in memory."""
+        """Store an argument that differs from that of the last call of this thread. What it is made of stays where it
+        is in memory.
+        """
         kind, here = self.kinds[place], frame.places[place]
         if kind == "i" and type(value) is int:  # most of them
             frame.words[here] = value
@@ -109,7 +111,7 @@ class KeptKernel:
 
 @cache
 def may_be_kept() -> bool:
-    """Whether this is a place where code is kept: numba as it comes, on a system that this was tried on."""
+    """Test whether machine code can be kept here: unmodified numba, on a system that this was tried on."""
     options = {name for name in os.environ if name.startswith("NUMBA_")}
     return (
         sys.platform == "linux"
@@ -129,12 +131,12 @@ def _file(function: Callable, kinds: list[str]) -> Path:
 
 
 def _check(header: Header, code: bytes) -> int:
-    """Sum of a file; a header that a disk has changed would call what is not there."""
+    """Compute a checksum of a file, as a damaged header would call what is not there."""
     return zlib.crc32(code, zlib.crc32(json.dumps(header[:-1]).encode()))
 
 
 def keep(function: Callable, header: Header, code: bytes) -> None:
-    """Leaves the object code of a kernel on the disk; where it cannot, numba's own cache remains."""
+    """Write the object code of a kernel to disk; where that fails, numba's own cache remains."""
     data = json.dumps(header._replace(check=_check(header, code))._asdict()).encode() + b"\n" + code
     import tempfile  # with half of the standard library
 
@@ -148,7 +150,7 @@ def keep(function: Callable, header: Header, code: bytes) -> None:
 
 
 def kept_kernel(function: Callable, arguments: tuple[Any, ...]) -> KeptKernel | None:
-    """A kernel for some arguments as it was kept; None where there is none that can run here."""
+    """Load a kernel for some arguments from disk; None where no file can run here."""
     if not may_be_kept():
         return None
     try:
@@ -168,7 +170,7 @@ def kept_kernel(function: Callable, arguments: tuple[Any, ...]) -> KeptKernel | 
 
 
 def _linked(header: Header, code: bytes) -> Callable[[int], Any]:
-    """The function of a file, ready to run. Raises OSError where something that it calls is not there."""
+    """Link the function of a file, ready to run. Raises OSError where something that it calls is not there."""
     from llvmlite import binding
 
     binding.initialize_native_target()

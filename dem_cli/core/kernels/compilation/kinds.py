@@ -1,4 +1,4 @@
-"""Kinds of arguments that kernels take, as words, and how arguments lie in memory: without loading numba."""
+"""Kinds of kernel arguments as strings, and how arguments lie in memory; without loading numba."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ _KINDS = {kind: word for word, of in _NUMBERS.items() for kind in of}
 
 
 class OtherTypes(TypeError):
-    """Arguments of other types than the code was compiled for."""
+    """Error: arguments of other types than the code was compiled for."""
 
 
 def kind_of(value: Any) -> str:
-    """Type of an argument as machine code knows it: `entries.kind_of_type` says the same of numba's types.
+    """Name the type of an argument as machine code knows it: `entries.kind_of_type` names the same of numba's types.
 
     Raises OtherTypes for what is never kept.
     """
@@ -41,7 +41,7 @@ def kind_of(value: Any) -> str:
 
 
 def words_of(value: Any, held: list[Any]) -> list[int]:
-    """An argument as numba lays it out; held: what must live as long as that is used."""
+    """Lay out an argument in machine words as numba does; held: what must live as long as that is used."""
     kind = type(value)
     if kind is np.ndarray:
         held.append(value)
@@ -64,7 +64,7 @@ def _as_word(value: float) -> int:
 
 
 def words_of_kind(kind: str) -> int:
-    """Words that an argument of a kind takes in the frame."""
+    """Count the machine words of an argument of a kind."""
     if kind in _NUMBERS or kind.endswith("]"):
         return 1
     if kind.startswith("("):
@@ -73,7 +73,7 @@ def words_of_kind(kind: str) -> int:
 
 
 def _members(kinds: str) -> list[str]:
-    """Kinds in a tuple, which may hold others."""
+    """Split a tuple kind into the kinds of its members, which may be tuples."""
     found, depth = [""], 0
     for letter in kinds:
         depth += (letter in "([") - (letter in ")]")

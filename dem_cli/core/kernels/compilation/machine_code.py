@@ -1,4 +1,4 @@
-"""Machine code of kernels, the own way: declared, compiled and kept by what this folder adds to numba."""
+"""Machine code of kernels by the package's own way: declared, compiled and kept by what this folder adds to numba."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ __all__ = [
 
 
 def _load_numba_without_blas() -> None:
-    """numba imports scipy.linalg when it first meets an array, only to learn whether there is a BLAS: 0.2 s.
+    """Load numba without scipy.linalg, which it imports only to learn whether there is a BLAS: 0.2 s.
 
     No kernel here multiplies matrices.
     """
@@ -58,7 +58,7 @@ set_up_numba()
 
 
 class KernelCache(FunctionCache):
-    """Compiled code on disk, found again by what the closure of a kernel was made of.
+    """Cache of compiled code on disk, found by a fingerprint of the closure of a kernel.
 
     Numba finds it by the closure as it is pickled, which depends on whether Python had compiled the modules itself or
     read them from `__pycache__`: the second process of a fresh checkout would compile everything again. And it
@@ -74,7 +74,9 @@ class KernelCache(FunctionCache):
         return sig, codegen.magic_tuple(), fingerprint(self._py_func)
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """For numba and, where it can, for itself. What cannot be saved is compiled all the same."""
+        """Save compiled code for numba and, where possible, for use without it. What cannot be saved is compiled all
+        the same.
+        """
         try:
             super().save_overload(sig, data)
             library = data.library
@@ -86,7 +88,7 @@ class KernelCache(FunctionCache):
             SWITCH.throw(error)
 
     def _load_overload(self, sig: Any, target_context: Any) -> Any:
-        """As numba's own; what is here only for numba is kept as well: it would not be asked for it otherwise."""
+        """Load compiled code as numba does; code that is here only for numba is kept for use without it as well."""
         found = self._cache_file.load(self._index_key(sig, target_context.codegen()))
         if found is None:
             return None
@@ -96,7 +98,8 @@ class KernelCache(FunctionCache):
         return self._impl.rebuild(target_context, found)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """As numba's own, which first gets ready to compile all that it knows: that takes as long as to load numba.
+        """Load compiled code without preparing numba to compile all that it knows, which takes as long as to load
+        numba.
 
         Kernels call nothing outside of themselves but numba's runtime and functions of C, which are there from the
         start: it would make symbols of others, hashes of strings and threads of its own, known as well.
@@ -113,31 +116,31 @@ class KernelCache(FunctionCache):
 
 
 def take_own_way() -> None:
-    """Before anything is told or compiled."""
+    """Set numba up for the package's own way, before anything is declared or compiled."""
     take_shortcuts(CalleeCompiler)
     pass_records_by_reference()
 
 
 def literal_unroll(function: Any, name: str) -> None:
-    """Puts what numba knows as a loop over a tuple of several types under a name that a function sees."""
+    """Bind numba's loop over a tuple of several types to a name that a function sees."""
     function.__globals__[name] = numba.literal_unroll
 
 
 def compiled(function: Callable) -> Callable:
-    """The function as machine code, from the disk where it is there. IEEE division, no fast-math."""
+    """Compile a function, or load its machine code from disk. IEEE division, no fast-math."""
     found: Any = numba.njit(error_model="numpy", fastmath=False, nogil=True, **KERNEL)(function)
     found._cache = KernelCache(function)  # as its `enable_caching` does with numba's own
     return cast(Callable, found)
 
 
 def bound(kernel: Any) -> Callable:
-    """What a kernel runs for its last arguments, without a look at types; itself where there are several."""
+    """Code that a kernel ran for its last arguments, without a check of types; the kernel where there are several."""
     overloads = list(kernel.overloads.values())
     return cast(Callable, overloads[0].entry_point) if len(overloads) == 1 else cast(Callable, kernel)
 
 
 def is_compiled_for(kernel: Any, arguments: tuple[Any, ...]) -> bool:
-    """Whether there is machine code for such arguments: then an error of a call is the kernel's own."""
+    """Test whether there is machine code for such arguments: then an error of a call is the kernel's own."""
     try:
         return tuple(map(numba.typeof, arguments)) in kernel.overloads
     except Exception:
@@ -145,7 +148,7 @@ def is_compiled_for(kernel: Any, arguments: tuple[Any, ...]) -> bool:
 
 
 def declare_callee(function: Callable, forced: bool) -> None:
-    """Kernels may call this function; forced: it is put in the place of each call, which numba decides otherwise.
+    """Let kernels call this function; forced: it is always inlined, which numba decides otherwise.
 
     What kernels call allocates nothing and keeps no array, so that references to arrays need no counting: counted at
     each call inside a branching loop, they cost several times the work of a law. (`_nrt`: numba's runtime for them.)
@@ -154,12 +157,12 @@ def declare_callee(function: Callable, forced: bool) -> None:
 
 
 def declare_overload(function: Callable, implementation: Callable) -> None:
-    """Kernels may call this function, and get what `implementation` returns for the types of its arguments."""
+    """Let kernels call this function, and get what `implementation` returns for the types of its arguments."""
     numba_overload(function, jit_options=cast(Any, {"_nrt": False, **CALLEE}))(implementation)
 
 
 def declare_built_in(function: Callable, _: None) -> None:
-    """Kernels may call this function, whose LLVM code views.py, atomics.py or bits.py has under its name."""
+    """Let kernels call this function, whose LLVM code is in views.py, atomics.py or bits.py under its name."""
     name = function.__name__
     if name in TYPES:
         type_callable(function)(TYPES[name])

@@ -1,4 +1,4 @@
-"""Setup of numba, whichever way kernels are compiled: where it keeps compiled code, and who hears that it compiles."""
+"""Setup of numba, whichever way kernels are compiled: its cache folder, and observers of compilation."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ UNDER_WAY: list[Any] = []  # compilations: of a kernel, of a function that it ca
 
 
 def set_up_numba() -> None:
-    """Once or more often, before anything is compiled.
+    """Set numba up before anything is compiled; may be called again.
 
     Numba reads its settings again whenever a variable of its part of the environment has changed, and would from then
     on keep compiled code beside the sources, where nothing tells old code from new.

@@ -1,4 +1,5 @@
-"""Kernels by numba as it comes: its public names alone, for versions and machines where the own way is not gone.
+"""Kernels compiled by unmodified numba: its public names alone, for versions and machines where the package's own way
+fails.
 
 Records are taken apart, callees compiled as machine code of their own, references counted: compilation takes several
 times as long, and each process loads numba. The arithmetic is the same, and so are the answers, to the last digit.
@@ -31,7 +32,9 @@ _OPTIONS: dict[str, Any] = {
 
 
 class PlainNumba:
-    """Numba as it comes. copies: what to tell it of instead of the functions, where it knows these already."""
+    """Way to compile kernels by unmodified numba. copies: declared instead of functions that numba knows already.
+    copies: what to tell it of instead of the functions, where it knows these already.
+    """
 
     def __init__(self, copies: FunctionCopies | None = None) -> None:
         set_up_numba()
@@ -41,38 +44,38 @@ class PlainNumba:
         return function if self._copies is None else self._copies.of(function)
 
     def declare_callee(self, function: Callable, forced: bool) -> None:
-        """Kernels may call this function; forced: it is put in the place of each call."""
+        """Let kernels call this function; forced: it is always inlined."""
         (register_jitable(forceinline=True) if forced else register_jitable)(self._mine(function))
 
     def declare_overload(self, function: Callable, implementation: Callable) -> None:
-        """Kernels may call this function, and get what `implementation` returns for the types of its arguments."""
+        """Let kernels call this function, and get what `implementation` returns for the types of its arguments."""
         overload(self._mine(function))(self._mine(implementation))
 
     def declare_built_in(self, function: Callable, _: None) -> None:
-        """Kernels may call this function: what it does in Python is what it does here."""
+        """Let kernels call this function: what it does in Python is what it does here."""
         self.declare_callee(function, True)
 
     def literal_unroll(self, function: FunctionType, name: str) -> None:
-        """Puts what numba knows as a loop over a tuple of several types under a name that a function sees."""
+        """Bind numba's loop over a tuple of several types to a name that a function sees."""
         self._mine(function).__globals__[name] = numba.literal_unroll
 
     def compiled(self, function: Callable) -> PlainKernel:
-        """The function as machine code."""
+        """Make a kernel that compiles the function at its first call."""
         return PlainKernel(self._mine(function), kept=self._copies is None)
 
     @staticmethod
     def bound(kernel: PlainKernel) -> Callable:
-        """What looks at types as little as it can."""
+        """Return the callable of a kernel that checks types least."""
         return kernel
 
     @staticmethod
     def is_compiled_for(kernel: PlainKernel, arguments: tuple[Any, ...]) -> bool:
-        """Whether an error is that of the kernel: here any is, there being no other way left."""
+        """Return True: any error is the kernel's own, as there is no other way left to compile it."""
         return True
 
 
 class PlainKernel:
-    """A kernel with a compiled function for the types of each call; kept: in the cache of numba as well.
+    """Kernel with a compiled function for the types of each call; kept: in the cache of numba as well.
 
     Each of them has a name of its own. Numba numbers what it keeps of functions of one name, so that two processes
     that compile one kernel for different types at one time might run the code of each other.
@@ -84,7 +87,7 @@ class PlainKernel:
         self._of_any_types: Any = numba.njit(**_OPTIONS)(function)
 
     def __call__(self, *arguments: Any) -> Any:
-        """Runs it; compiles it at the first call with these types."""
+        """Run the kernel; compiles it at the first call with these types."""
         try:
             kinds = tuple(map(kind_of, arguments))
         except OtherTypes:
@@ -104,11 +107,11 @@ class PlainKernel:
         return cast(Callable, self._of_any_types)
 
     def __getattr__(self, name: str) -> Any:
-        """What numba asks for where another kernel calls this one."""
+        """Return attributes that numba needs where another kernel calls this one."""
         return getattr(self._of_any_types, name)
 
     def _named_by(self, kinds: tuple[str, ...]) -> FunctionType:
-        """The same function, with a name that says for which arguments it is compiled."""
+        """Copy the function under a name that says for which arguments it is compiled."""
         of = self._function
         copy = FunctionType(of.__code__, of.__globals__, of.__name__, of.__defaults__, of.__closure__)
         digest = hashlib.sha256(repr((fingerprint(of), kinds)).encode()).hexdigest()

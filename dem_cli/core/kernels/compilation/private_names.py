@@ -1,4 +1,4 @@
-"""Private names of numba and LLVM that the own way uses, as they were where it was tried: asked for before it is gone.
+"""Check of the private names of numba and LLVM that the package's own way uses.
 
 `A.f(self, x)` is a function with these parameters, `A.f` anything, `A: _x` something that instances of A keep.
 """
@@ -101,7 +101,7 @@ PRIVATE_NAMES: dict[str, tuple[str, ...]] = {
 
 
 def check_private_names() -> None:
-    """Raises Surprise where a version is another one, or something is gone, named otherwise or called otherwise."""
+    """Check versions and private names of numba and LLVM; raises Surprise where one is missing or differs."""
     if not numba.__version__.startswith(TRIED):
         raise Surprise(f"numba {numba.__version__}; {TRIED}x is what this was tried with")
     for module, names in PRIVATE_NAMES.items():
@@ -111,7 +111,7 @@ def check_private_names() -> None:
 
 
 def _there(module: str, name: str) -> bool:
-    """Whether something is there as the table says."""
+    """Test whether a name exists as the table says."""
     path, kept = name.partition("(")[0].partition(": ")[::2]
     found: Any = importlib.import_module(module)
     for part in path.split("."):

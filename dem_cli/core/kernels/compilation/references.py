@@ -28,7 +28,7 @@ _UNCHANGED = "invariant.load"
 
 
 class Record(types.Type):
-    """A named tuple: its fields with their types. Two with the same fields of the same types are one."""
+    """Numba type of a named tuple: its fields with their types. Two with the same fields of the same types are one."""
 
     def __init__(self, word: str, fields: tuple[tuple[str, types.Type], ...]) -> None:
         self.fields, self.types = tuple(name for name, _ in fields), dict(fields)
@@ -38,13 +38,13 @@ class Record(types.Type):
 
 @cache
 def _record(word: str, fields: tuple[tuple[str, types.Type], ...]) -> Record:
-    """Made once: numba asks at each call of a kernel."""
+    """Make the type of a record once: numba asks at each call of a kernel."""
     return Record(word, fields)
 
 
 @register_model(Record)
 class RecordModel(models.OpaqueModel):
-    """An address."""
+    """Memory model of a record: an address."""
 
 
 def _struct(context: Any, record: Record) -> Any:
@@ -53,7 +53,7 @@ def _struct(context: Any, record: Record) -> Any:
 
 @unbox(Record)
 def _filled_in(record: Record, named_tuple: Any, c: Any) -> NativeValue:
-    """The struct of a record, from Python; lives as long as the call."""
+    """Fill the struct of a record from Python; it lives as long as the call."""
     builder = c.builder
     struct = cgutils.alloca_once(builder, _struct(c.context, record))
     failed = cgutils.false_bit
@@ -76,18 +76,18 @@ def _filled_in(record: Record, named_tuple: Any, c: Any) -> NativeValue:
 
 @infer_getattr
 class RecordFields(AttributeTemplate):
-    """Types of what is read from a record."""
+    """Types of the fields that are read from a record."""
 
     key = Record
 
     def generic_resolve(self, record: Record, name: str) -> types.Type | None:  # type: ignore[override]
-        """Of one field."""
+        """Return the type of one field."""
         return record.types.get(name)
 
 
 @lower_getattr_generic(Record)
 def _field(context: Any, builder: Any, record: Record, address: Any, name: str) -> Any:
-    """Reads a field."""
+    """Read a field of a record."""
     kind = record.types[name]
     struct = builder.bitcast(address, _struct(context, record).as_pointer())
     slot = cgutils.gep_inbounds(builder, struct, 0, record.fields.index(name))
@@ -99,14 +99,14 @@ def _field(context: Any, builder: Any, record: Record, address: Any, name: str) 
 
 
 def _unchanged(builder: Any, slot: Any) -> Any:
-    """What stands there during the whole run of a kernel."""
+    """Load a value that stays unchanged during the whole run of a kernel."""
     loaded = builder.load(slot)
     loaded.set_metadata(_UNCHANGED, builder.module.add_metadata([]))
     return loaded
 
 
 def _array(context: Any, builder: Any, kind: types.Array, slot: Any) -> Any:
-    """Address and shape of an array; what follows from these need not be read."""
+    """Read address and shape of an array; what follows from these need not be read."""
     members = default_manager[kind]
     where = {
         member: members.get_field_position(member) for member in ("itemsize", "nitems", "data", "shape", "strides")
@@ -134,7 +134,7 @@ _kinds: dict[tuple, types.Type] = {}  # of arrays that are alike in all that num
 
 
 def _kind_of(field: Any, context: Any) -> types.Type | None:
-    """What numba takes a field for; it works that out anew for each array, 20 µs."""
+    """Return numba's type of a field; remembered, as numba takes 20 µs for each array."""
     if type(field) is not np.ndarray:
         return typeof_impl(field, context)
     flags = field.flags
@@ -146,7 +146,7 @@ def _kind_of(field: Any, context: Any) -> types.Type | None:
 
 @cache
 def pass_records_by_reference() -> None:
-    """Has numba take named tuples of this package for records, as long as kernels are compiled the own way."""
+    """Let numba pass named tuples of this package by reference, as long as kernels are compiled the own way."""
     by_numba = typeof_impl.dispatch(tuple)
 
     @typeof_impl.register(tuple)

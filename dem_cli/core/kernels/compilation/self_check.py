@@ -1,4 +1,4 @@
-"""The own way tried on a first small kernel: what it gives must be what Python gives, before others are trusted."""
+"""Self-check of the package's own way on a small kernel: compiled code must give what Python gives."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["check_small_kernel"]
 
 
 class Sample(NamedTuple):
-    """A record of an array with a row for each number, and a number."""
+    """Sample record of an array with a row for each number, and a number."""
 
     rows: np.ndarray
     share: float
@@ -31,14 +31,14 @@ def _summed(sample, row):
 
 
 def _sums(sample, given, found):
-    """Takes what kernels take: a record, a tuple, an array; calls what they call."""
+    """Sum numbers of a record, a tuple and an array by the calls that kernels use."""
     for row in range(found.size):
         found[row] = _summed(sample, row) / given[0] + given[1]
     return found[0] > 0.0
 
 
 def check_small_kernel() -> None:
-    """Raises Surprise where compiled code gives something else than Python."""
+    """Run a small kernel; raises Surprise where compiled code gives something else than Python."""
     machine_code.declare_callee(_scaled, True)
     machine_code.declare_callee(_summed, False)
     sample, given = Sample(np.arange(6.0).reshape(3, 2) - 0.3, 1.7), (3.0, 0.1)

@@ -1,4 +1,4 @@
-"""Shortcuts through numba: answers that it works out again for every instruction, half the time that it compiles.
+"""Shortcuts through numba: remembered answers that it works out again for every instruction, half of its compile time.
 
 Each gives what numba would. It asks all that know an operator, text and sets among them, what it is for some types, at
 each place where it stands, and twice. Where it looks for what arrays might be wrapped in, it finds nothing and loads
@@ -28,7 +28,7 @@ _before: list[tuple[Any, str, Any]] = []  # whose, name and value of what was pu
 
 
 def _equal(one: TargetConfig, other: object) -> bool:
-    """What neither has set is alike."""
+    """Compare two sets of compiler options; options that neither has set are equal."""
     if type(one) is not type(other):
         return _compared_by_value(one, other)
     ours, theirs = one._values, other._values
@@ -37,17 +37,17 @@ def _equal(one: TargetConfig, other: object) -> bool:
 
 @cache
 def _hash_of(kind: type[TargetConfig]) -> int:
-    """Numba hashes the names of all options, not what they are set to."""
+    """Hash the names of all options, as numba does, not their values."""
     return hash(tuple(sorted(kind.options)))
 
 
 def _itself(context: Any, builder: Any, signature: Any, arguments: tuple) -> Any:
-    """What an array is wrapped in."""
+    """Lower the wrapper of an array to the array itself."""
     return arguments[0]
 
 
 def _call_type(function: BaseFunction, context: Any, args: tuple, kws: dict) -> Any:
-    """Signature of a call; remembered where no option of the caller has a part in its choice: numba's own operators."""
+    """Find the signature of a call; remembered for numba's own operators, where options of the caller do not matter."""
     _, known = _call_types.setdefault(id(function), (function, {}))
     place = tuple(args)
     if not kws and place in known:
@@ -59,7 +59,7 @@ def _call_type(function: BaseFunction, context: Any, args: tuple, kws: dict) -> 
 
 
 def _size_of(context: BaseContext, kind: Any) -> int:
-    """Of a type [bytes]; LLVM reads a module to say it."""
+    """Return the size of a type [bytes]; remembered, as LLVM reads a module for it."""
     word = str(kind)
     if word not in _sizes:
         _sizes[word] = _asked_of_llvm(context, kind)
@@ -67,7 +67,7 @@ def _size_of(context: BaseContext, kind: Any) -> int:
 
 
 def take_shortcuts(compiler: type) -> None:
-    """Before anything is compiled; compiler: of callees.
+    """Install the shortcuts before anything is compiled; compiler: of callees.
 
     Numba compiles what is called anew for callers of other options. Callees have options of their own, but for the
     one that puts all into the place of a call.
@@ -98,6 +98,6 @@ def _put(owner: Any, name: str, shortcut: Any) -> None:
 
 
 def leave_shortcuts() -> None:
-    """Numba as it was before `take_shortcuts`."""
+    """Restore numba as it was before `take_shortcuts`."""
     while _before:
         setattr(*_before.pop())

@@ -1,4 +1,4 @@
-"""The switch between the package's own way through numba and numba as it comes: thrown once, for all kernels.
+"""Switch between the package's own way through numba and unmodified numba: thrown once, for all kernels.
 
 The own way (callees.py, entries.py, kept_code.py, machine_code.py, references.py, shortcuts.py, views.py, ...) reaches
 into private names of numba and LLVM, which a next version may rename. Whatever surprises it throws the switch: from
@@ -20,11 +20,11 @@ def _set(name: str) -> bool:
 
 
 class Surprise(Exception):
-    """Something is not as it was where the own way was tried."""
+    """Error: a version or a private name differs from those where the package's own way was tried."""
 
 
 class Switch:
-    """Why kernels of this process are compiled by numba as it comes, if they are, and what else users may want to know.
+    """Reason why kernels of this process are compiled by unmodified numba, if they are, and remarks for users.
 
     reason    what surprised; None while the own way is gone
     remarks   kernels that numba has to be loaded for in each process, and the like; `dem run -v` prints them
@@ -35,33 +35,35 @@ class Switch:
         self.remarks: list[str] = []
 
     def own_way(self) -> bool:
-        """Whether kernels are compiled the package's own way."""
+        """True where kernels are compiled the package's own way."""
         if self.reason is None and _set(PLAIN):
             self.reason = f"{PLAIN} is set"
         return self.reason is None
 
     def throw(self, surprise: Exception) -> None:
-        """From here on numba as it comes compiles kernels. Raises Surprise where that is an error."""
+        """Switch to unmodified numba for all later kernels. Raises Surprise where that is an error."""
         if _set(STRICT):
             raise Surprise(_words(surprise)) from surprise
         if self.own_way():
             self.reason = _words(surprise)
 
     def remark(self, text: str, fault: bool = False) -> None:
-        """Something that costs time in each process, but no answer; fault: Surprise is raised where it is an error."""
+        """Record what costs time in each process but changes no result; fault: Surprise is raised where it is an
+        error.
+        """
         if fault and _set(STRICT):
             raise Surprise(text)
         if text not in self.remarks:
             self.remarks.append(text)
 
     def said(self) -> list[str]:
-        """A line each, for users."""
+        """List the remarks for users, a line each."""
         by_numba = "kernels are compiled by numba as it comes, which takes longer"
         return ([] if self.reason is None else [f"{by_numba}: {self.reason}"]) + self.remarks
 
 
 def _words(surprise: Exception) -> str:
-    """One line, not the page that numba may write."""
+    """Shorten a fault to one line, not the page that numba may write."""
     first = next(iter(str(surprise).strip().splitlines()), "")
     return first if isinstance(surprise, Surprise) else f"{type(surprise).__name__}: {first}".rstrip(": ")
 

@@ -13,30 +13,30 @@ __all__ = ["CODE", "TYPES"]
 
 
 def _flat(context: Any) -> Callable:
-    """Type of `in_a_row`."""
+    """Type the function `in_a_row`."""
     return lambda array: array.copy(ndim=1)
 
 
 def _like(context: Any) -> Callable:
-    """Type of `shaped_as`."""
+    """Type the function `shaped_as`."""
     return lambda array, like: array.copy(ndim=like.ndim)
 
 
 def _in_a_row(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    """All numbers of an array in C order."""
+    """Lower `in_a_row`: all numbers of an array in C order."""
     source = make_array(signature.args[0])(context, builder, arguments[0])
     return _view(context, builder, signature.return_type, source, [source.nitems])
 
 
 def _shaped_as(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    """The numbers of an array in the shape of another one."""
+    """Lower `shaped_as`: the numbers of an array in the shape of another one."""
     source, like = (make_array(kind)(context, builder, value) for kind, value in zip(signature.args, arguments))
     shape = cgutils.unpack_tuple(builder, like.shape, signature.args[1].ndim)
     return _view(context, builder, signature.return_type, source, shape)
 
 
 def _view(context: Any, builder: Any, kind: types.Array, source: Any, shape: list[Any]) -> Any:
-    """Memory of an array as another one, which does not count who refers to it."""
+    """Build an array over the memory of another one, without a reference count."""
     strides = [source.itemsize]
     for extent in reversed(shape[1:]):
         strides.insert(0, builder.mul(strides[0], extent))

@@ -1,1 +1,1 @@
-"""Blocks that deform: uniform strain as further coordinates of a block, for all contact loops."""
+"""Deformable blocks: uniform strain as further coordinates of a block, for all contact loops."""

@@ -1,4 +1,4 @@
-"""Spread of a joint whose blocks deform: motion of its places by strain, dyads of the forces at them; 2D and 3D.
+"""Relative motion along a joint of deformable blocks, and dyads of its forces; 2D and 3D.
 
 On geometry of the start a joint has one frame and one anchor; a place is counted along the tangents. By strain alone a
 place moves by what its anchor does and by ΔD t for each of its coordinates, ΔD: of b less of a.
@@ -12,7 +12,7 @@ from dem_cli.core.kernels.vec import axpy, components, compose, scale
 
 
 def spread_of(frame, gradient_a, gradient_b, dt):
-    """For each tangent how far b moves against a, by strain, over a metre along it; seen in the frame of the joint."""
+    """Compute for each tangent the motion of b against a by strain, per metre along it; in the frame of the joint."""
     return tuple(_one_spread(frame, gradient_a, gradient_b, tangent, dt) for tangent in frame[1:])
 
 
@@ -32,7 +32,7 @@ def _one_spread(frame, gradient_a, gradient_b, tangent, dt):
 
 
 def spread_at(spread, place):
-    """Opening and sliding of a place by the spread of its joint."""
+    """Compute opening and sliding of a place by the strain of the blocks of its joint."""
     total = scale(place[0], spread[0])
     for share, one in zip(place[1:], spread[1:], strict=True):
         total = axpy(share, one, total)
@@ -57,7 +57,7 @@ def _spread_at(spread, place):
 
 
 def no_leverage(like):
-    """Σ place × force of a joint without forces: for each tangent a vector in the frame of the joint."""
+    """Return zero sums of place × force of a joint: for each tangent a vector in the frame of the joint."""
     return (scale(0.0, like),) * (len(like) - 1)
 
 
@@ -69,7 +69,7 @@ def _no_leverage(like):
 
 
 def add_leverage(leverage, place, normal, shear):
-    """With the force at one more place."""
+    """Add place × force of one more place."""
     force = (normal, *shear)
     return tuple(axpy(share, force, one) for share, one in zip(place, leverage, strict=True))
 
@@ -88,7 +88,7 @@ def _add_leverage(leverage, place, normal, shear):
 
 @inline
 def add_spread_dyads(dyads, a, b, frame, leverage):
-    """Dyads of the forces of a joint about its anchor, onto block b, and against block a."""
+    """Add dyads of the forces of a joint about its anchor to block b, and subtract them from block a."""
     d = len(frame)
     for k in range(d - 1):
         normal, along = leverage[k][0], leverage[k][1:]
@@ -102,5 +102,5 @@ def add_spread_dyads(dyads, a, b, frame, leverage):
 
 @inline
 def spread_between(frame, gradient_a, gradient_b, arm_a, arm_b):
-    """Speed of sliding of b against a at a point, by strain alone."""
+    """Compute the speed of sliding of b against a at a point, by strain alone."""
     return components(frame, axpy(-1.0, times(gradient_a, arm_a), times(gradient_b, arm_b)))[1]

@@ -10,7 +10,7 @@ from dem_cli.core.kernels.vec import dot, load, scale, store
 
 
 def load_matrix(array, row, like):
-    """array[row] as a matrix of as many rows as `like` is long."""
+    """Load array[row] as a matrix of as many rows as `like` is long."""
     d = len(like)
     return tuple(tuple(array[row, k * d : k * d + d]) for k in range(d))
 
@@ -24,13 +24,13 @@ def _load_matrix(array, row, like):
 
 @inline
 def store_matrix(array, row, matrix):
-    """array[row] = matrix, row by row."""
+    """Store a matrix as array[row], row by row."""
     for k in range(len(matrix)):
         store(array, row, k * len(matrix), matrix[k])
 
 
 def times(matrix, vector):
-    """Matrix × vector."""
+    """Multiply a matrix by a vector."""
     return tuple(dot(row, vector) for row in matrix)
 
 
@@ -42,7 +42,7 @@ def _times(matrix, vector):
 
 
 def transposed(matrix):
-    """Its rows as columns."""
+    """Transpose a matrix."""
     return tuple(zip(*matrix, strict=True))
 
 
@@ -58,7 +58,7 @@ def _transposed(matrix):
 
 
 def product(first, second):
-    """Matrix × matrix."""
+    """Multiply two matrices."""
     columns = transposed(second)
     return tuple(times(columns, row) for row in first)
 
@@ -81,7 +81,7 @@ def _product(first, second):
 
 
 def inverse(matrix):
-    """Inverse of a matrix that is not singular, by its cofactors."""
+    """Invert a matrix that is not singular, by its cofactors."""
     return _planar_inverse(matrix) if len(matrix) == 2 else _spatial_inverse(matrix)
 
 

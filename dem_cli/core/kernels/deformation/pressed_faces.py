@@ -21,7 +21,7 @@ from dem_cli.core.kernels.vec import axpy, dot, load, scale
 
 @always_inline
 def line_gaps(low, high):
-    """Gaps at which springs at both ends of a line, each with half its stiffness, carry what its pressure does [m].
+    """Compute equivalent gaps of two springs at the ends of a line, each with half its stiffness, for its pressure [m].
 
     low, high: gaps at the ends [m]. Without branches, for many lines at once.
     """
@@ -40,7 +40,8 @@ def line_gaps(low, high):
 
 @always_inline
 def rubbing_together(low, high, gap_low, gap_high):
-    """Both ends of a line that rubs where its pressure acts: frame, levers and place of each, with one lever along it.
+    """Compute frame, levers and place of both ends of a line that rubs where its pressure acts, with one lever along
+    it.
 
     low, high: frame, levers of both blocks and place of each end; gap_low, gap_high: as `line_gaps` leaves them [m].
     Friction at ends of which one gapes would have a moment about the other, that no face has.
@@ -59,7 +60,7 @@ def rubbing_together(low, high, gap_low, gap_high):
 
 @always_inline
 def _at_corner(a, b, c):
-    """∫ of the overlap × N of each corner, over the area, of the part where the overlap has the sign that it has at a.
+    """Integrate overlap × N of each corner, over the area, of the part where the overlap has the sign that it has at a.
 
     a, b, c: overlaps [m], of which b and c have the other sign or are zero.
     """
@@ -70,7 +71,9 @@ def _at_corner(a, b, c):
 
 @always_inline
 def triangle_shares(a, b, c):
-    """∫ ⟨overlap⟩ N dA over the area for the corners of a triangle [m]; a, b, c: overlaps there, negative: open."""
+    """Integrate ⟨overlap⟩ N dA over the area for the corners of a triangle [m]; a, b, c: overlaps there, negative:
+    open.
+    """
     if a <= 0.0 and b <= 0.0 and c <= 0.0:
         return 0.0, 0.0, 0.0
     if a > 0.0 and b <= 0.0 and c <= 0.0:
@@ -97,7 +100,7 @@ def triangle_shares(a, b, c):
 
 @inline
 def _hand_on(joints, shares, first, last):
-    """Corners that are faint give their shares to those beside them."""
+    """Move the shares of nearly straight (faint) corners to their neighbours."""
     after, faint, back = joints.after, joints.faint, joints.back
     for point in range(first, last):
         corner = after[point]
@@ -110,7 +113,7 @@ def _hand_on(joints, shares, first, last):
 
 @inline
 def _share_in_fan(joints, contacts, first, last):
-    """Leaves in `contacts.lumped` what the points of an outline get of the pressure on it, as `share_pressure` does."""
+    """Compute the pressure shares of the points of an outline into `contacts.lumped`, as `share_pressure` does."""
     kn, after, fans, gaps, shares = joints.kn, joints.after, joints.fans, contacts.gaps, contacts.lumped
     stiffness, middle, area, n_faint = 0.0, 0.0, 0.0, 0
     for point in range(first, last):
@@ -143,7 +146,7 @@ def _share_in_fan(joints, contacts, first, last):
 
 @inline
 def share_pressure(joints, contacts, joint):
-    """Leaves in `contacts.lumped` at which gaps the points of a joint carry what they do [m]: their own, or shares."""
+    """Set in `contacts.lumped` the gaps at which points of a joint carry their force [m]: their own, or shares."""
     first, last = joints.starts[joint], joints.starts[joint + 1]
     gaps, shares = contacts.gaps, contacts.lumped
     if joints.integrated[joint] == NOT_INTEGRATED:
@@ -157,7 +160,7 @@ def share_pressure(joints, contacts, joint):
 
 @always_inline
 def _before(ax, ay, bx, by):
-    """Whether direction a comes before b on the way around from the first axis, counter-clockwise."""
+    """Test whether direction a comes before b on the way around from the first axis, counter-clockwise."""
     upper_a, upper_b = ay > 0.0 or (ay == 0.0 and ax > 0.0), by > 0.0 or (by == 0.0 and bx > 0.0)
     if upper_a != upper_b:
         return upper_a
@@ -166,7 +169,9 @@ def _before(ax, ay, bx, by):
 
 @inline
 def fan_out(joints, joint):
-    """The point after each along the outline of a joint, and the share of its area between both and their mean."""
+    """Divide the area of a joint into a fan of triangles: the point after each along the outline, and the share of its
+    area.
+    """
     kn, points, after, fans = joints.kn, joints.points, joints.after, joints.fans
     first, last = joints.starts[joint], joints.starts[joint + 1]
     zero = (0.0, 0.0, 0.0)
@@ -212,7 +217,9 @@ def fan_out(joints, joint):
 
 @inline
 def _find_faint(joints, first, last, t1, t2):
-    """How faint each corner of an outline is, by its turn; t1, t2: along the joint. None is where all would be."""
+    """Compute how nearly straight (faint) each corner of an outline is, by its turn; t1, t2: along the joint. None is
+    where all would be.
+    """
     points, after, faint, back = joints.points, joints.after, joints.faint, joints.back
     zero, strong = (0.0, 0.0, 0.0), 0
     for point in range(first, last):
@@ -236,7 +243,7 @@ def _find_faint(joints, first, last, t1, t2):
 
 @kernel
 def fan_out_all(joints):
-    """Outlines of all joints in space that are integrated."""
+    """Divide the areas of all integrated joints in space into fans of triangles."""
     for joint in range(joints.blocks.shape[0]):
         if joints.integrated[joint] == INTEGRATED:
             fan_out(joints, joint)
@@ -244,7 +251,7 @@ def fan_out_all(joints):
 
 @inline
 def press_face(joints, contacts, joint):
-    """Normal forces of the points of a face that is integrated, by the gaps that they have."""
+    """Compute normal forces of the points of an integrated face, by the gaps that they have."""
     share_pressure(joints, contacts, joint)
     for point in range(joints.starts[joint], joints.starts[joint + 1]):
         contacts.normal[point] = joints.kn[point] * max(-contacts.lumped[point], 0.0)
@@ -252,7 +259,7 @@ def press_face(joints, contacts, joint):
 
 @kernel
 def press_all(joints, contacts):
-    """Normal forces of all faces in space that are integrated, by the gaps that they have and the outlines of now."""
+    """Compute normal forces of all integrated faces in space, by their present gaps and outlines."""
     for joint in range(joints.blocks.shape[0]):
         if joints.integrated[joint] == INTEGRATED:
             fan_out(joints, joint)

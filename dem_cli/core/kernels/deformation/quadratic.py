@@ -18,7 +18,7 @@ N_QUADRATIC, COEFFICIENTS, SECOND = 6, 12, 6  # modes; of u; sums of forces time
 
 @inline
 def take_bends(amplitudes, row, first, shapes, out):
-    """Coefficients of u, or of its rate, from amplitudes in columns `first` on."""
+    """Compute coefficients of u, or of its rate, from amplitudes in columns `first` on."""
     for m in range(COEFFICIENTS):
         out[row, m] = 0.0
     for k in range(N_QUADRATIC):
@@ -29,7 +29,7 @@ def take_bends(amplitudes, row, first, shapes, out):
 
 @inline
 def bend(bodies, shape):
-    """Coefficients of the rate of u of all blocks; sums of forces begin anew."""
+    """Compute coefficients of the rate of u of all blocks; sets sums of forces to zero."""
     velocities = bodies.velocities
     bodies.triads[:] = 0.0
     for number in range(velocities.shape[0]):
@@ -38,7 +38,7 @@ def bend(bodies, shape):
 
 @inline
 def store_bends(bodies, shape):
-    """Coefficients of u of all blocks."""
+    """Compute coefficients of the displacement u of all blocks."""
     modes = bodies.modes
     for number in range(modes.shape[0]):
         take_bends(modes, np.uint64(number), modes.shape[1] - N_QUADRATIC, shape.bends, bodies.bent)
@@ -69,7 +69,7 @@ def resist_bending(bodies, shape):
 
 @always_inline
 def _line(coefficients, turns, i, arm, along):
-    """R u at arm + t·along as c0 + c1 t + c2 t², vectors along the axes of the world."""
+    """Expand R u at arm + t·along as c0 + c1 t + c2 t², vectors along the world axes."""
     c, s, p = turns[i, 0], turns[i, 1], coefficients
     x, y = c * arm[0] + s * arm[1], c * arm[1] - s * arm[0]
     dx, dy = c * along[0] + s * along[1], c * along[1] - s * along[0]
@@ -85,14 +85,14 @@ def _line(coefficients, turns, i, arm, along):
 
 @always_inline
 def line_apart(coefficients, turns, a, b, arm_a, arm_b, along):
-    """How far block b is displaced against a, at a place of their joint and t along it: c0, c1, c2 of `_line`."""
+    """Compute the relative displacement of b against a along a joint as c0, c1, c2 of `_line`."""
     of_a, of_b = _line(coefficients, turns, a, arm_a, along), _line(coefficients, turns, b, arm_b, along)
     return axpy(-1.0, of_a[0], of_b[0]), axpy(-1.0, of_a[1], of_b[1]), axpy(-1.0, of_a[2], of_b[2])
 
 
 @always_inline
 def apart_at(line, t, frame):
-    """The same at one point, across the joint and along it."""
+    """Compute the relative displacement at one point of a joint, across and along it."""
     moved = axpy(t, axpy(t, line[2], line[1]), line[0])
     return dot(frame[0], moved), dot(frame[1], moved)
 
@@ -116,12 +116,12 @@ def _push(triads, turns, i, arm, along, sign, force, first, second):
 
 @always_inline
 def bend_apart(triads, turns, a, b, arm_a, arm_b, along, sums):
-    """Sums of the forces of a joint onto block b, and against block a; sums: Σ f, Σ f t, Σ f t²."""
+    """Add sums of the forces of a joint to block b, and subtract them from a; sums: Σ f, Σ f t, Σ f t²."""
     _push(triads, turns, a, arm_a, along, -1.0, sums[0], sums[1], sums[2])
     _push(triads, turns, b, arm_b, along, 1.0, sums[0], sums[1], sums[2])
 
 
 @always_inline
 def with_force(sums, t, force):
-    """The sums of a joint with the force at one more point."""
+    """Add the force at one more point to the sums of a joint."""
     return axpy(1.0, force, sums[0]), axpy(t, force, sums[1]), axpy(t * t, force, sums[2])

@@ -12,7 +12,7 @@ from dem_cli.core.kernels.jit import inline, overload
 
 
 def arm_of(frame, reach):
-    """From the centroid of a block to a point, by its levers in the plane; in space that is its reach."""
+    """Return the arm from the centroid of a block to a point: from its levers in the plane, the reach in space."""
     return _arm_in_plane(frame, reach) if len(frame) == 2 else reach
 
 
@@ -29,7 +29,7 @@ def _arm_in_plane(frame, reach):
 
 
 def put_motions(motions, lifts, strained, bodies, point, side, block, arm):
-    """The rows of a point of a block: motion by rates of modes, and rates of modes by impulses."""
+    """Store the rows of a point of a block: motion by rates of modes, and rates of modes by impulses."""
     if motions.ndim > 1:
         if len(arm) == 2:
             _put_in_plane(motions, lifts, strained, bodies, point, side, block, arm)
@@ -98,7 +98,7 @@ def _put_lifts(motions, lifts, strained, point, side, block):
 
 
 def plus_modes(motions, velocities, point, a, b, relative):
-    """Velocity of b against a at a point with what rates of modes add to that of rigid blocks."""
+    """Add to the velocity of b against a at a point what rates of modes contribute."""
     if motions.ndim == 1:
         return relative
     return tuple(part + _axis(motions, velocities, point, a, b, i) for i, part in enumerate(relative))
@@ -130,7 +130,7 @@ def _axis(motions, velocities, point, a, b, i):
 
 
 def push_modes(rows, target, point, a, b, force):
-    """A force onto b, and against a: on their modes by `motions`, or the rates of these that it makes by `lifts`."""
+    """Apply a force onto b, and against a, to their modes by `motions`, or to the rates of these by `lifts`."""
     if rows.ndim > 1:
         _push(rows, target, point, a, b, force)
 
@@ -154,7 +154,7 @@ def _push(rows, target, point, a, b, force):
 
 
 def give_pushes(motions, strained, velocities, pushes, block):
-    """Rates of the modes of a block by its impulses."""
+    """Change the rates of the modes of a block by its impulses."""
     if motions.ndim > 1:
         _give(motions, strained, velocities, pushes, block)
 
@@ -174,7 +174,7 @@ def _give(motions, strained, velocities, pushes, block):
 
 
 def mobility_along(motions, lifts, point, direction, inverse):
-    """Rate of a point along a direction by a unit impulse along it, with what strains add to that of rigid blocks."""
+    """Compute the rate of a point along a direction by a unit impulse along it, strains included."""
     return inverse if motions.ndim == 1 else inverse + _along(motions, lifts, point, direction, direction)
 
 
@@ -201,7 +201,7 @@ def _along(motions, lifts, point, one, other):
 
 
 def mobility_of(motions, lifts, point):
-    """What strains add to the rates of a point in space by impulses, xx xy xz yy yz zz; nothing: an empty tuple."""
+    """Compute the mobility of a point in space by strains, xx xy xz yy yz zz; an empty tuple where blocks are rigid."""
     return () if motions.ndim == 1 else _mobility_in_space(motions, lifts, point)
 
 
@@ -220,7 +220,7 @@ def _mobility_in_space(motions, lifts, point):
 
 
 def with_mobility(values, more):
-    """The sum of two such; more: empty where blocks are rigid."""
+    """Add two mobilities; more: empty where blocks are rigid."""
     return values if len(more) == 0 else tuple(a + b for a, b in zip(values, more, strict=True))
 
 

@@ -18,7 +18,7 @@ from dem_cli.core.kernels.spin import half_turn, store_turn, turn_further
 
 @always_inline
 def _own_turning(velocities, turns, row, first, r):
-    """−W ȧ along the axes of the block, component k."""
+    """Compute component k of the spin −W ȧ along the axes of the block."""
     total = 0.0
     for j in range(turns.shape[2]):
         total -= turns[row, r, j] * velocities[row, first + j]
@@ -46,7 +46,7 @@ def _spin_in_space(bodies, strained, i, like, like_rotation):
 
 
 def spin_by_modes(bodies, strained, i, like, like_rotation):
-    """−W ȧ of a block along the axes of the world [rad/s]."""
+    """Compute the spin −W ȧ of a block by its modes, along the world axes [rad/s]."""
     found = _spin_in_plane if len(like_rotation) == 1 else _spin_in_space
     return found(bodies, strained, i, like, like_rotation)
 
@@ -59,7 +59,7 @@ def _spin_by_modes(bodies, strained, i, like, like_rotation):
 
 @inline
 def _add_swirl(gradients, i, spin):
-    """Adds the velocity gradient of a spin to that of a block."""
+    """Add the velocity gradient of a spin to that of a block."""
     if len(spin) == 1:
         gradients[i, 1] -= spin[0]
         gradients[i, 2] += spin[0]
@@ -74,7 +74,7 @@ def _add_swirl(gradients, i, spin):
 
 @inline
 def stretch_in_time(bodies, shape, strained, like, like_rotation):
-    """As `stretch`, where velocities have mean spins."""
+    """Compute velocity gradients of deformable blocks in time histories, where velocities have mean spins."""
     stretch(bodies, shape, like, True)
     for number in range(strained.turns.shape[0]):
         i = np.uint64(number)
@@ -84,7 +84,7 @@ def stretch_in_time(bodies, shape, strained, like, like_rotation):
 
 @inline
 def _torque_along(bodies, i, k, like, like_rotation):
-    """Component k of the torque on a block, along its own axes."""
+    """Compute component k of the torque on a block, along its own axes."""
     forces, turns, d = bodies.forces, bodies.turns, len(like)
     if len(like_rotation) == 1:
         return forces[i, d]
@@ -93,14 +93,14 @@ def _torque_along(bodies, i, k, like, like_rotation):
 
 @inline
 def resist_in_time(bodies, shape, strained, like, like_rotation):
-    """As `resist`, where velocities have mean spins."""
+    """Compute forces on the modes in time histories, where velocities have mean spins."""
     resist(bodies, shape, like, True)
     turn_modes(bodies, shape, strained, like, like_rotation)
 
 
 @inline
 def turn_modes(bodies, shape, strained, like, like_rotation):
-    """Forces −Wᵀ τ on the modes of blocks."""
+    """Add forces −Wᵀ τ on the modes of blocks."""
     forces, turns = bodies.forces, strained.turns
     first = forces.shape[1] - turns.shape[2]
     for number in range(turns.shape[0]):
@@ -115,7 +115,9 @@ def turn_modes(bodies, shape, strained, like, like_rotation):
 
 @inline
 def kick_modes(bodies, shape, strained):
-    """Rates of modes after a step, damped within it; from those before (`means`) and from `unbalanced` less `drags`."""
+    """Update the rates of modes in a step, damped within it; from those before (`means`) and from `unbalanced` less
+    `drags`.
+    """
     velocities, unbalanced = bodies.velocities, bodies.unbalanced
     old, drags, pulled = bodies.means, bodies.drags, bodies.pulled
     keep, gain, n_dof = strained.keep, strained.gain, velocities.shape[1]
@@ -136,10 +138,11 @@ def kick_modes(bodies, shape, strained):
 
 @inline
 def book_modes(bodies, shape, strained, rate, dt, ledger):
-    """What damping of the modes took in this step, by the mean rates over it, and dashpots by their impulses.
+    """Add to the energy balance what damping of the modes and dashpots took in this step, by the mean rates over it.
 
     Impulses J change rates with the damping of the modes: J = (M + ½ dt (rate M + C)) Δv. means: rates before; pulled:
-    after the kick."""
+    after the kick.
+    """
     velocities, old, pulled = bodies.velocities, bodies.means, bodies.pulled
     masses, viscosity = strained.masses, strained.viscosity
     n_dof, m, heavier = velocities.shape[1], masses.shape[1], 1.0 + 0.5 * rate * dt
@@ -163,7 +166,7 @@ def book_modes(bodies, shape, strained, rate, dt, ledger):
 
 @inline
 def turn_by_modes(bodies, shape, strained, dt, like, like_rotation):
-    """Turns blocks by −W ȧ, before they drift by their mean spins."""
+    """Turn blocks by the spin −W ȧ, before they drift by their mean spins."""
     for number in range(strained.turns.shape[0]):
         i = np.uint64(number)
         if shape.mode_stiffness[i, 0] == 0.0:

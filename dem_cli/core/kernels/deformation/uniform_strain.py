@@ -16,7 +16,7 @@ from dem_cli.core.kernels.jit import inline, overload
 
 
 def strain_of(amplitudes, row, first, per_radius, like):
-    """Strain from amplitudes, or its rate from their rates, in columns `first` on; a matrix, per_radius: [1/m]."""
+    """Compute the strain from amplitudes, or its rate from their rates, in columns `first` on; per_radius: [1/m]."""
     if len(like) == 2:
         return _planar_strain(amplitudes, row, first, per_radius, like)
     return _spatial_strain(amplitudes, row, first, per_radius, like)
@@ -28,14 +28,14 @@ def _strain_of(amplitudes, row, first, per_radius, like):
 
 
 def _planar_strain(amplitudes, row, first, per_radius, like):
-    """Of modes: all directions alike, x against y, shear."""
+    """Compute the strain in the plane from its modes: all directions alike, x against y, shear."""
     even, uneven = per_radius * amplitudes[row, first], per_radius * amplitudes[row, first + 1]
     sheared = per_radius * amplitudes[row, first + 2]
     return (even + uneven, sheared), (sheared, even - uneven)
 
 
 def _spatial_strain(amplitudes, row, first, per_radius, like):
-    """Of modes: all directions alike, x against y, both against z, shear yz, zx, xy."""
+    """Strain in space from its modes: all directions alike, x against y, both against z, shear yz, zx, xy."""
     even, flat = per_radius * amplitudes[row, first], per_radius * amplitudes[row, first + 1]
     long = per_radius * amplitudes[row, first + 2]
     yz, zx = per_radius * amplitudes[row, first + 3], per_radius * amplitudes[row, first + 4]
@@ -44,7 +44,7 @@ def _spatial_strain(amplitudes, row, first, per_radius, like):
 
 
 def mode_parts(tensor):
-    """Σ tensor : ∂ε/∂(amplitude × 1/radius) of every mode."""
+    """Compute Σ tensor : ∂ε/∂(amplitude × 1/radius) of every mode."""
     return _planar_parts(tensor) if len(tensor) == 2 else _spatial_parts(tensor)
 
 
@@ -64,7 +64,7 @@ def _spatial_parts(tensor):
 
 
 def rotation_of(turns, row, like):
-    """Rotation matrix of a block."""
+    """Return the rotation matrix of a block."""
     if len(like) == 2:
         return (turns[row, 0], -turns[row, 1]), (turns[row, 1], turns[row, 0])
     return load_matrix(turns, row, like)
@@ -79,7 +79,7 @@ def _rotation_of(turns, row, like):
 
 @inline
 def stretch(bodies, shape, like, moves):
-    """Velocity gradients of blocks that deform, from the rates of their modes; dyads begin anew."""
+    """Compute velocity gradients of deformable blocks from the rates of their modes; sets dyads to zero."""
     stiffness, velocities, dyads = shape.mode_stiffness, bodies.velocities, bodies.dyads
     dyads[:] = 0.0
     first = velocities.shape[1] - stiffness.shape[1]
@@ -114,7 +114,7 @@ def resist(bodies, shape, like, moves):
 
 @inline
 def stretch_apart(dyads, a, b, force, arm_a, arm_b):
-    """Dyads of a contact force onto block b, and against block a."""
+    """Add the dyad of a contact force to block b, and subtract it from block a."""
     d = len(force)
     for row in range(d):
         for column in range(d):
@@ -124,7 +124,7 @@ def stretch_apart(dyads, a, b, force, arm_a, arm_b):
 
 @inline
 def deform(bodies, dt):
-    """Amplitudes from their rates."""
+    """Update the amplitudes of modes from their rates."""
     modes, velocities = bodies.modes, bodies.velocities
     first = velocities.shape[1] - modes.shape[1]
     for i in range(modes.shape[0]):
@@ -134,7 +134,7 @@ def deform(bodies, dt):
 
 @inline
 def store_gradient(bodies, shape, i, like):
-    """R (I + ε) of a block, from its rotation and its modes."""
+    """Compute the deformation gradient R (I + ε) of a block from its rotation and its modes."""
     turn = rotation_of(bodies.turns, i, like)
     strained = product(turn, strain_of(bodies.modes, i, np.uint64(0), 1.0 / shape.radii[i], like))
     d = len(like)
@@ -145,7 +145,7 @@ def store_gradient(bodies, shape, i, like):
 
 @inline
 def stretching_speed(bodies, i, like):
-    """No corner of a block moves faster by deformation [m per unit of time]."""
+    """Bound the speed of the corners of a block by deformation [m per unit of time]."""
     velocities = bodies.velocities
     speed = 0.0
     for k in range(velocities.shape[1] - bodies.modes.shape[1], velocities.shape[1]):

@@ -1,1 +1,3 @@
-"""Contact points in tiles: sixteen joints side by side, which the processor works on at once; threads over tiles."""
+"""Contact forces in tiles: sixteen joints side by side, which the processor works on at once (SIMD); threads over
+tiles.
+"""

@@ -1,4 +1,4 @@
-"""Tiles of joints whose geometry does not move: which joint is in which lane, and room for what a step works on.
+"""Tiles of joints in fixed geometry: which joint is in which lane, and work space of a step.
 
 LANES joints make a tile, those with equally many points together; a joint with fewer points than its tile has slots
 holds points there that never touch. Room holds nothing from one compiled call to the next.
@@ -22,7 +22,7 @@ TILES_OF_CHUNK = 256  # whose friction work is summed by itself, whoever works o
 
 
 class JointTiles(NamedTuple):
-    """Layout and room of the tiles; none where the law has no form for lanes (laws/law.py)."""
+    """Layout and work space of the tiles; none where the law has no form for lanes (laws/law.py)."""
 
     joints: np.ndarray  # of each lane, −1: none, (n_tiles·LANES,)
     slots: np.ndarray  # a tile has the slots slots[t]:slots[t + 1], each a point of every lane, (n_tiles + 1,)
@@ -55,7 +55,9 @@ class JointTiles(NamedTuple):
 
 
 def rows_of(d: int, n_numbers: int) -> tuple[int, int, int]:
-    """Rows of `numbers` of a tile without its slots, of a slot there and in `state`, and of the motion of a tile."""
+    """Count rows of `numbers` of a tile without its slots, of a slot there and in `state`, and of the motion of a
+    tile.
+    """
     r = d * (d - 1) // 2
     return (2 if d == 2 else 9 + N_TORSION) + 2 * d + n_numbers, d + 1, d + 2 * r
 
@@ -70,7 +72,7 @@ NO_TILES = JointTiles(
 def tiled(
     blocks: np.ndarray, starts: np.ndarray, n_blocks: int, d: int, n_numbers: int, threads: int = 1
 ) -> JointTiles:
-    """Tiles of joints with these blocks, (n_joints, 2), and points, as FixedJoints has them.
+    """Arrange joints with these blocks, (n_joints, 2), and points, as FixedJoints has them, in tiles.
 
     n_numbers: numbers of a joint that the law reads; threads: that may work on them.
     """

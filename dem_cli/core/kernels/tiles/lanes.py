@@ -16,7 +16,7 @@ ROW = np.uint64(LANES)
 
 
 def take(array, start, like):
-    """As many numbers of a lane as `like` has; start: place of the first one."""
+    """Load as many numbers of a lane as `like` has; start: place of the first one."""
     return tuple(array[start + np.uint64(k) * ROW] for k in range(len(like)))
 
 
@@ -30,7 +30,7 @@ def _take(array, start, like):
 
 
 def put(array, start, numbers):
-    """The other way round."""
+    """Store numbers of a lane; the reverse of `take`."""
     for k, number in enumerate(numbers):
         array[start + np.uint64(k) * ROW] = number
 
@@ -60,7 +60,7 @@ def _put(array, start, numbers):
 
 
 def take_frame(array, start, like):
-    """The frame of a lane, as `load_frame` has it, from 2 rows in the plane and 9 in space."""
+    """Load the frame of a lane, as `load_frame` has it, from 2 rows in the plane and 9 in space."""
     if len(like) == 2:
         x, y = take(array, start, like)
         return (x, y), (-y, x)
@@ -85,7 +85,7 @@ def _take_frame(array, start, like):
 
 @built_in
 def lowest_bit(bits):
-    """Place of the lowest bit that is set in a whole number; there is one."""
+    """Find the place of the lowest set bit of a whole number that is not zero."""
     place = 0
     while not (bits >> place) & 1:
         place += 1

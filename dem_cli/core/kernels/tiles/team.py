@@ -17,7 +17,7 @@ SPINS = 2000  # about 5 µs
 
 @built_in
 def add_at_once(array, index, amount):
-    """array[index] += amount, whoever else adds to it; returns what was there before."""
+    """Add to array[index] atomically; returns what was there before."""
     before = array[index]
     array[index] += amount
     return before
@@ -25,17 +25,17 @@ def add_at_once(array, index, amount):
 
 @built_in
 def now_at(array, index):
-    """array[index] as all see it; what others wrote before they wrote that is seen as well."""
+    """Read array[index] atomically; what others wrote before they wrote that is seen as well."""
     return array[index]
 
 
 @built_in
 def give_way():
-    """Lets others have this core."""
+    """Yield this processor core to other threads."""
 
 
 def new_team(members: int = 1) -> np.ndarray:
-    """Of so many threads, none of which has come yet."""
+    """Make the shared counters of a team of so many threads, none of which has come yet."""
     team = np.zeros(N_TEAM, dtype=np.int64)
     team[MEMBERS] = members
     return team
@@ -43,14 +43,16 @@ def new_team(members: int = 1) -> np.ndarray:
 
 @inline
 def join(team):
-    """Number of this thread among those of the team, and how many there are."""
+    """Join a team: returns the number of this thread, and how many there are."""
     members = team[MEMBERS]
     return (add_at_once(team, TICKET, 1) if members > 1 else 0), members
 
 
 @inline
 def wait(team, members, met):
-    """Waits until all are here. met: arrivals of the waits before; returns them with those of this one."""
+    """Wait until all threads of the team are here (barrier). met: arrivals of the waits before; returns them with those
+    of this one.
+    """
     met += members
     add_at_once(team, ARRIVED, 1)
     spins = 0

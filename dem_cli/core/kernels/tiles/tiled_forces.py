@@ -1,4 +1,4 @@
-"""Contact forces of joints whose geometry does not move, sixteen joints at a time (SIMD), for laws without branches.
+"""Contact forces in fixed geometry, sixteen joints at a time (SIMD), for laws without branches.
 
 The same sums in the same order as kernels/contact_forces.py, to the last bit. Each tile leaves the pushes of its joints
 on their blocks; each block then gathers its own, in the order of the joints: whoever works on which tile, and on how
@@ -38,7 +38,7 @@ ONE, TWO, TWO_POINTS = np.uint64(1), np.uint64(2), 2
 
 
 class TiledForces(NamedTuple):
-    """What `make_advance` closes over."""
+    """Compiled functions of the tiles that the stepping loop calls."""
 
     take_up: Callable  # into the tiles, before the first step
     press: Callable  # forces of some tiles; returns their friction work [J]
@@ -47,19 +47,19 @@ class TiledForces(NamedTuple):
 
 @inline
 def rows_of_torsion(like):
-    """Rows of `numbers` of a tile for torsion: none in the plane."""
+    """Count rows of `numbers` of a tile for torsion: none in the plane."""
     return 0 if len(like) == 2 else N_TORSION
 
 
 @inline
 def stride_of(like):
-    """Numbers from the pushes of one tile to those of the next, a power of two."""
+    """Compute the distance between the pushes of one tile and those of the next, a power of two."""
     return (np.uint64(4) if len(like) == 2 else np.uint64(16)) * ROW
 
 
 @inline
 def gather(tiles, forces, ring, first, last, back, like, like_rotation):
-    """Forces of the blocks from first to last: the sums of what their joints push with.
+    """Sum the forces of the blocks from first to last over the pushes of their joints.
 
     ring: of so many tiles, less one, the pushes are kept; back: rows of `forces` that stand so much before the block.
     """
@@ -86,14 +86,14 @@ def gather(tiles, forces, ring, first, last, back, like, like_rotation):
 
 @inline
 def _begin_of(tiles, tile, of_tile, of_slot):
-    """Where the numbers of a tile and the state of its points begin, and how many slots it has."""
+    """Find where the numbers of a tile and the state of its points begin, and how many slots it has."""
     first, last = np.uint64(tiles.slots[np.uint64(tile)]), np.uint64(tiles.slots[np.uint64(tile) + ONE])
     return np.uint64(tile) * of_tile + first * of_slot, first * of_slot, last - first
 
 
 @inline
 def _move(tiles, velocities, tile, motion, like, like_rotation):
-    """How the blocks of the joints of one tile move: b against a, then both spins."""
+    """Compute the motion of the blocks of the joints of one tile: b against a, then both spins."""
     ends, moves, d = tiles.ends, tiles.moves, len(like)
     end, turns, R = np.uint64(tile) * TWO * ROW, motion + np.uint64(d) * ROW, np.uint64(len(like_rotation)) * ROW
     for i in range(LANES):
@@ -105,7 +105,7 @@ def _move(tiles, velocities, tile, motion, like, like_rotation):
 
 
 def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> TiledForces:
-    """Tiles for one law in its form for lanes (laws/law.py).
+    """Make the functions of tiles for one law in its form for lanes (laws/law.py).
 
     n_numbers: numbers of a joint that the tiles keep: parameters that the law reads; elastic: in the plane, and last
     whether the pressure is integrated over the line (kernels/deformation/pressed_faces.py).
@@ -114,7 +114,7 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
 
     @inline
     def take_up(joints, contacts, first, last, like, like_rotation):
-        """Constants and state of the tiles from first to last, from the records that everybody else reads."""
+        """Copy constants and state into the tiles from first to last, from the records that everybody else reads."""
         tiles, d = joints.tiles, len(like)
         n_axes, ends, numbers, state = joints.axes.shape[1], tiles.ends, tiles.numbers, tiles.state
         n_drawn = rows_of_torsion(like)
@@ -160,7 +160,7 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
 
     @inline
     def give_back(joints, contacts, first, last, like):
-        """The state of the tiles from first to last after a step, into the records."""
+        """Copy the state of the tiles from first to last back into the records after a step."""
         tiles, state, d = joints.tiles, joints.tiles.state, len(like)
         of_slot = np.uint64(d + 1) * ROW
         for t in range(first, last):
@@ -187,7 +187,8 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
 
     @inline
     def press_slots(tiles, begin, held, count, push, motion, room, marked, dt, like, like_rotation):
-        """Forces of one tile with any number of slots, left in `pushes`; the lanes that lost something, as bits.
+        """Compute forces of one tile with any number of slots, into `pushes`; returns the lanes that lost work, as
+        bits.
 
         begin, held, push: where its numbers, the state of its points and its pushes begin; motion, room, marked: where
         there is room for it in `moves`, `work` and `marks`.
@@ -268,7 +269,7 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
 
     @inline
     def press_pairs(tiles, begin, held, push, motion, before, dt, like, like_rotation):
-        """As press_slots, of joints with two points: the same sums in one loop, so that they stay in registers."""
+        """Compute the forces of press_slots for joints with two points, in one loop, so that they stay in registers."""
         d, r = len(like), len(like_rotation)
         D, R, T = np.uint64(d) * ROW, np.uint64(r) * ROW, np.uint64(d - 1) * ROW
         A, S = (TWO if d == 2 else np.uint64(9)) * ROW, D + ROW
@@ -319,7 +320,7 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
 
     @inline
     def wear(tiles, lossy, first, held, count, before, moved, slides, lost, like, like_rotation):
-        """Slip paths of one tile in the lanes where work is lost; adds that to `lost` [J].
+        """Update slip paths of one tile in the lanes where work is lost; adds that to `lost` [J].
 
         first, held, before: where `numbers`, `state` and `marks` of its slots begin; moved[slides:]: slide and spin.
         """
@@ -346,7 +347,7 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
 
     @inline
     def press_tile(tiles, tile, ring, motion, room, marked, lost, dt, like, like_rotation):
-        """Forces of one tile, left in `pushes`; adds its friction work to `lost` [J].
+        """Compute forces of one tile, into `pushes`; adds its friction work to `lost` [J].
 
         motion, room, marked: where its room begins in `moves`, `work` and `marks`.
         """
@@ -368,7 +369,7 @@ def make_tiled_forces(law: Callable, n_numbers: int, elastic: bool = False) -> T
 
     @inline
     def press(tiles, velocities, ring, member, members, first, last, dt, like, like_rotation):
-        """Forces of the tiles from first to last, by one thread of some; adds their friction work to `lost` [J]."""
+        """Forces of the tiles from first to last, by one thread of several; adds their friction work to `lost` [J]."""
         of_motion = np.uint64(len(like) + 2 * len(like_rotation)) * ROW
         motions, lost = np.uint64(member * (tiles.moves.size // members)), tiles.lost
         room, marked = member * (tiles.work.size // members), member * (tiles.marks.size // members)

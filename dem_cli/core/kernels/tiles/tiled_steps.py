@@ -1,4 +1,4 @@
-"""n steps in one compiled call as kernels/advance.py does them, with joints in tiles and threads that share the work.
+"""Time steps in one compiled call as in kernels/advance.py, with joints in tiles and threads that share the work.
 
 For many blocks whose geometry does not move. Each thread has tiles and chunks of blocks of its own. Sums over all
 blocks are those of the chunks in their order, so that any number of threads finds the same bits.
@@ -54,14 +54,14 @@ ALL_TILES = np.uint64(2**40 - 1)
 
 @inline
 def _share(n, member, members):
-    """What of n things in a row one thread of some works on: the first and the one behind the last."""
+    """Divide n things in a row among threads: the first of one thread and the one behind its last."""
     each = (n + members - 1) // members
     return min(member * each, n), min((member + 1) * each, n)
 
 
 @inline
 def _total(books, column):
-    """Sum over all chunks of blocks, in their order."""
+    """Sum a column over all chunks of blocks, in their order."""
     total = 0.0
     for chunk in range(books.shape[0]):
         total += books[chunk, column]
@@ -70,13 +70,13 @@ def _total(books, column):
 
 @inline
 def _together(tiles, members, met):
-    """Waits for the other threads, where there are some."""
+    """Wait for the other threads, where there are some."""
     return wait(tiles.team, members, met) if members > 1 else met
 
 
 @inline
 def _owner(tiles, chunk, members):
-    """Which thread works on a chunk of blocks, and whether nobody else works on its joints."""
+    """Find the thread that works on a chunk of blocks, and whether nobody else works on its joints."""
     n_parts = tiles.lost.size
     each = ((n_parts + members - 1) // members) * TILES_OF_CHUNK
     first = tiles.begins[chunk] // each
@@ -87,7 +87,7 @@ def _owner(tiles, chunk, members):
 
 @inline
 def _open(tiles, ledger, member, low, high):
-    """Sums of the steps before, into the first chunk and the first of the parts from low to high."""
+    """Put the ledger of the steps before into the first chunk and the first part, and zero into all others."""
     for part in range(low, high):
         tiles.lost_before[part] = ledger[FRICTION] if part == 0 else 0.0
     if member == 0:
@@ -98,7 +98,7 @@ def _open(tiles, ledger, member, low, high):
 
 @inline
 def _close(tiles, ledger):
-    """Sums of all chunks and parts, in their order, into the ledger."""
+    """Add the sums of all chunks and parts, in their order, into the ledger."""
     for k in range(N_LEDGER):
         ledger[k] = _total(tiles.books, k)
     ledger[FRICTION] = 0.0
@@ -108,7 +108,7 @@ def _close(tiles, ledger):
 
 @inline
 def _add_up(flat, books, control, mode, first, last, dt):
-    """What steers all blocks, of those with the degrees of freedom from first to last: powers, flow."""
+    """Sum the powers and the flow that steer all blocks, over the degrees of freedom from first to last."""
     velocities, forces, previous, dead_loads, live_loads, inverse_masses, _ = flat
     i, j, dead, live = first, last, control[DEAD_FACTOR], control[LIVE_FACTOR]
     if mode in (GUIDED, TILT_GUIDED, FIRE):
@@ -126,7 +126,7 @@ def _add_up(flat, books, control, mode, first, last, dt):
 
 @inline
 def _drift(bodies, first, last, dt, like, like_rotation):
-    """Positions and rotation vectors of some blocks from velocities; to first order rotations add up."""
+    """Update positions and rotation vectors of some blocks from velocities; to first order rotations add up."""
     positions, orientations, velocities, d = bodies.positions, bodies.orientations, bodies.velocities, len(like)
     for number in range(last - first):
         i = np.uint64(first) + np.uint64(number)
@@ -140,7 +140,7 @@ def _settle(
     bodies, flat, means, drags, books, control, first, last, keep, steer, impulse, dt, carried, back, free,
     like, like_rotation,
 ):  # fmt: skip
-    """Velocities, books and places of the blocks from first to last.
+    """Update velocities, energy sums and places of the blocks from first to last.
 
     flat: arrays by degrees of freedom; back: their forces stand so many rows before them; free: all speed limits are
     the same, so that one chunk has those of another.
@@ -163,7 +163,7 @@ def _settle(
 
 
 def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None = None) -> Callable:
-    """The compiled stepping loop for one law in tiles and the links that there are.
+    """Make the compiled stepping loop for one law in tiles and the links of the model.
 
     Its arguments are those of `make_advance`; as many threads have to call it as the team of the tiles has members.
     """
@@ -175,7 +175,7 @@ def make_tiled_advance(tiled_forces: TiledForces, link_forces: Callable | None =
         n_steps, mode, dt, bodies, shape, joints, geometry, contacts, links, loads, common, ledger, like,
         like_rotation,
     ):  # fmt: skip
-        """Advance by n_steps; returns them."""
+        """Advance by n_steps; returns n_steps."""
         tiles = joints.tiles
         books, n_tiles, n_blocks = tiles.books, tiles.slots.size - 1, bodies.velocities.shape[0]
         n_chunks, of_chunk = books.shape[0], BLOCKS_OF_CHUNK * bodies.velocities.shape[1]
