@@ -89,7 +89,8 @@ def test_a_suite_of_two_says_what_eurocode_8_asks_for(tmp_path):
     (tmp_path / "drums.toml").write_text(CASE + SUITE.replace("count = 7\nnumber = 3", "count = 2\nplateau = 6.0"))
     answer = dem("motion", tmp_path / "drums.toml", "-o", tmp_path / "out")
     assert (
-        "DOES NOT MEET EN 1998-1 3.2.3.1.2 (3), (4)a, (4)b, (4)c: (3): strong for 6 s, 10 s are asked" in answer.stdout
+        "DOES NOT MEET EN 1998-1 3.2.3.1.2 (3), (4)a, (4)b, (4)c: (3): strong for 6 s, 10 s are required"
+        in answer.stdout
     )
     assert "(4)a: 2 records, at least 3 are required" in answer.stdout
     (found,) = json.loads((tmp_path / "out" / "summary.json").read_text())["suites"]

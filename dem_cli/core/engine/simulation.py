@@ -431,7 +431,7 @@ class Simulation:
         self.contacts.exchanged[:] = 0.0
 
     def count_from(self, steps: int) -> None:
-        """Add the steps that were done before this simulation took over."""
+        """Set the number of steps that were done before this simulation took over."""
         self.steps = steps
 
     # -- state -------------------------------------------------------------------------------------

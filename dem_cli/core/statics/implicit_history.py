@@ -139,7 +139,8 @@ class ImplicitHistory:
         return self._narrowed(resolution)
 
     def _narrowed(self, resolution: float) -> bool:
-        """Return loads between the last carried and the first failed, beside the plateau of the resistance."""
+        """Narrow the bracket by loads between the last carried and the first failed, beside the plateau of the
+        resistance."""
         beside, tries = self.settings.beside * resolution, 0
         while self.high is not None and self.high - self.low > resolution * self.low:
             plateau = next(level.resisted for level in reversed(self.levels) if level.verdict == FAILS)
