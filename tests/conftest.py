@@ -24,7 +24,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell starts what run
     signal.signal(signal.SIGINT, signal.default_int_handler)
 FOLDERS = [str(ROOT), str(ROOT / "tests"), str(ROOT / "scripts")]  # of what tests and their processes import
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (*FOLDERS, os.environ.get("PYTHONPATH"))))
-# As `dem bench` has it: threads of libraries beside two workers of the tests gain nothing.
+# As scripts/benchmark has it: threads of libraries beside two workers of the tests gain nothing.
 for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 

@@ -7,7 +7,8 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 
-from dem_cli.app.bench.machine import one_thread
+from bench.machine import one_thread
+
 from studies.registry import STUDIES
 
 

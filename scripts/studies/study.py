@@ -9,8 +9,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from dem_cli.app.bench.cases import compiled
-from dem_cli.app.bench.machine import describe, sentence
+from bench.cases import compiled
+from bench.machine import describe, sentence
+
 from studies import measured, storage
 from studies.places import DOCS
 from studies.template import filled

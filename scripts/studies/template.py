@@ -7,9 +7,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from bench.table import lines_of, percent
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-from dem_cli.app.bench.table import lines_of, percent
 
 
 def filled(template: str, **values: Any) -> str:

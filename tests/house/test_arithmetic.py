@@ -10,7 +10,7 @@ from parsed import tree
 PACKAGE = Path(__file__).resolve().parents[2] / "dem_cli"
 # Rooms that only show, write for others or measure, and the one that replaces what is forbidden.
 FREE = {
-    "core/arithmetic", "app/bench", "app/cli", "masonry/exports", "results/post", "results/render", "results/report",
+    "core/arithmetic", "app/cli", "masonry/exports", "results/post", "results/render", "results/report",
     "app/verify", "core/kernels",
 }  # fmt: skip
 FUNCTIONS = {

@@ -60,7 +60,7 @@ def test_the_package_imports_what_it_declares():
 def test_extras_are_used():
     for distribution, extra in EXTRA_OF.items():
         assert distribution in names(PROJECT["optional-dependencies"][extra])
-    assert imported("dem_cli", "tests") == modules(EVERY)
+    assert imported("dem_cli", "scripts", "tests") == modules(EVERY)
 
 
 def test_the_citation_is_of_this_version_and_these_authors():

@@ -15,7 +15,6 @@ OUTSIDE = (
     "core/dynamics",
     "analyses",
     "core/limit",
-    "app/bench",
     "app/cli",
     "app/pipeline",
     "app/public",

@@ -40,7 +40,6 @@ COMMANDS = {  # name -> the line that `dem --help` shows
     "render": "Stills and movies of a run.",
     "report": "Write one page of HTML with all results of a run or sweep.",
     "export": "Write results in other formats.",
-    "bench": "Measure what runs cost, and how exact they are, on this machine.",
 }
 # Matrices here are small: threads of NumPy's linear algebra wait in a loop, an eighth of the CPU time of a short run.
 for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # read when NumPy is imported
@@ -166,6 +165,8 @@ def unknown_command(name: str) -> str:
     """Return the message for an unknown command."""
     from difflib import get_close_matches
 
+    if name == "bench":  # of versions before 0.21
+        return "no command 'bench' since 0.21: benchmarks are run by scripts/benchmark of a checkout"
     close = get_close_matches(name, COMMANDS, 1)
     hint = f", did you mean '{close[0]}'?" if close else ""
     return f"no command '{name}'{hint} (commands: {', '.join(COMMANDS)})"

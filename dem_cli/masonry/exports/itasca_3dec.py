@@ -14,7 +14,6 @@ import numpy as np
 
 from dem_cli.masonry.exports.contents import ExportedBlock, ExportedCase, number, triple
 
-FIXED = "dem-fixed"
 AUTO_STIFFNESS = 1e4  # kn times the size of a block over its mean pressure under its own weight
 
 

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from bench.table import percent
 from reference import results, value
 
-from dem_cli.app.bench.table import percent
 from dem_cli.core.limit.rigid_wall import TopLoad, split_load
 from dem_cli.results.post import style
 from studies import storage

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from dem_cli.app.bench.table import percent
+from bench.table import percent
+
 from studies import storage
 from studies.appendix_b.sweep import RIGID, changed, top_block
 from studies.template import bracket, table

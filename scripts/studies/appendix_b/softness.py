@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from bench.table import percent
 from reference import results
 
-from dem_cli.app.bench.table import percent
 from studies.appendix_b.sweep import RIGID, changed, kn_of, planned
 from studies.template import table
 

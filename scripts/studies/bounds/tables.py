@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from bench.table import percent
 from oracle.strong_joints import Points, stress_block_load, toppling_load
 
-from dem_cli.app.bench.table import percent
 from dem_cli.core.contact.layout import lobatto
 from studies.template import table
 

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from bench.diagrams import COLOURS, MARKERS
+from bench.table import percent
 from reference import results
 
-from dem_cli.app.bench.diagrams import COLOURS, MARKERS
-from dem_cli.app.bench.table import percent
 from dem_cli.results.post import style
 from studies.chapter6.shaken_case import extremes, run
 from studies.polygons import rectangle

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from bench.table import percent
 from reference import results
 
-from dem_cli.app.bench.table import percent
 from dem_cli.results.post import style
 from studies.bisection import bisect
 from studies.chapter6.shaken_case import ShakenCase, extremes, run

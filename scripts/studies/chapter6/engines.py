@@ -41,8 +41,8 @@ def measure() -> list[dict[str, Any]]:
 
 def shaken(model: Any, frequency: float, a: float, rate: int) -> dict[str, float | None]:
     """Time of collapse [s], or how far the lowest voussoir sank [m]; gravity turns as it does for who moves along."""
-    from dem_cli.app.bench.box2d_walls import THIN, Box2DWorld
-    from dem_cli.app.bench.tilting import EngineSettings
+    from bench.box2d_walls import THIN, Box2DWorld
+    from bench.tilting import EngineSettings
 
     scale, dt, iterations = EDGE / RING, 1.0 / rate, (10, 4)
     gravity = 9.81 * scale

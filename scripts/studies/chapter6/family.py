@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from bench.table import percent
 from reference import results
 from scipy.optimize import brentq
 
 from dem_cli.app import api
-from dem_cli.app.bench.table import percent
 from dem_cli.core.engine.properties import joint_properties, law_of
 from dem_cli.core.limit.analysis import limit_loads
 from dem_cli.masonry.assembly.solver_request import solver_request

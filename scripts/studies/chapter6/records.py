@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from bench.diagrams import COLOURS
+from bench.table import percent
 from reference import results
 
-from dem_cli.app.bench.diagrams import COLOURS
-from dem_cli.app.bench.table import percent
 from dem_cli.results.post import style
 from studies.chapter6.arch import SEMICIRCLE, UNIT, sizes
 from studies.chapter6.shaken_case import run

@@ -6,10 +6,10 @@ import math
 from pathlib import Path
 from typing import Any
 
+from bench.table import percent
 from oracle import rolling_polygons as statics
 from reference import results
 
-from dem_cli.app.bench.table import percent
 from dem_cli.results.post import style
 from studies.bisection import bisect
 from studies.chapter7.load_path import run

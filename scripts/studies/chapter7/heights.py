@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from bench.table import percent
 from oracle import rolling_polygons as statics
 from reference import results
 
-from dem_cli.app.bench.table import percent
 from dem_cli.results.post import style
 from studies.chapter7.load_path import middle, run, without_curve
 from studies.template import commands, minus, table

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from bench.diagrams import COLOURS, MARKERS
+from bench.table import percent
 from oracle import rolling_polygons as statics
 from reference import results
 
-from dem_cli.app.bench.diagrams import COLOURS, MARKERS
-from dem_cli.app.bench.table import percent
 from dem_cli.results.post import style
 from studies.chapter7.load_path import middle, run, top, without_curve
 from studies.template import commands, table

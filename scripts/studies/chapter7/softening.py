@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from bench.table import percent
 
-from dem_cli.app.bench.table import percent
 from dem_cli.results.post import style
 from studies.chapter7.load_path import run
 from studies.template import commands, table

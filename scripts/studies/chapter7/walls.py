@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from bench.table import percent
 from reference import results
 
-from dem_cli.app.bench.table import percent
 from dem_cli.results.post import style
 from studies import storage
 from studies.chapter7.load_path import run

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from dem_cli.app.bench.table import percent
+from bench.table import percent
+
 from studies.church.cases import model
 from studies.church.geometry import FITTED_SIDE, Slice
 from studies.church.mechanism import solved

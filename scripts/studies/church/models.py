@@ -6,7 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from dem_cli.app.bench.table import percent
+from bench.table import percent
+
 from dem_cli.results.post import style
 from studies.church.cases import RESOLUTION, THESIS, TITLES, model
 from studies.church.geometry import FITTED_SIDE, Slice

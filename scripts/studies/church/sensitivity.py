@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from dem_cli.app.bench.table import percent
+from bench.table import percent
+
 from studies import storage
 from studies.church.cases import slices
 from studies.church.geometry import Slice, tables

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from dem_cli.app.bench.table import percent
+from bench.table import percent
+
 from studies.church.cases import PRINTED, WALLS, wall
 from studies.church.mechanism import solved
 from studies.template import bracket, table

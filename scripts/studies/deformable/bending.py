@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from dem_cli.app.bench.table import percent
+from bench.table import percent
+
 from studies.deformable.elastic_wall import compliance
 from studies.deformable.lumped import RATIOS, WAYS
 from studies.solution import from_tables

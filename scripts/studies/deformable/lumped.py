@@ -5,8 +5,9 @@ from __future__ import annotations
 import time
 from typing import Any
 
+from bench.table import percent
+
 from dem_cli.app import api
-from dem_cli.app.bench.table import percent
 from dem_cli.core.engine.properties import joint_properties, law_of
 from dem_cli.core.engine.simulation import Simulation
 from dem_cli.core.kernels.records import HOLD_LOAD

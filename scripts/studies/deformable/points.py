@@ -6,9 +6,10 @@ import time
 from pathlib import Path
 from typing import Any
 
+from bench.table import percent
+
 import dem_cli
 from dem_cli.app import api
-from dem_cli.app.bench.table import percent
 from dem_cli.core.model.scales import stiffness_scale
 from studies.deformable.walls import AT, curve
 from studies.places import ROOT

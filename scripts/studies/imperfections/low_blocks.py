@@ -11,8 +11,9 @@ from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
+from bench.cases import solve
+
 from dem_cli.app import api
-from dem_cli.app.bench.cases import solve
 from dem_cli.case.imperfection import Imperfection
 from dem_cli.case.schema import Case
 from dem_cli.core.model.model import Model

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from dem_cli.app.bench.table import percent
+from bench.table import percent
+
 from studies.loads.criteria import ABOVE, AGREES, error, problems
 from studies.loads.methods import FINE_GROWTH, CaseLoads, MethodLoad
 from studies.template import table as markdown

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from bench.table import percent
 from reference import result, value
 
-from dem_cli.app.bench.table import percent
 from studies.pulses import column
 from studies.pulses.pictures import BOOK, NAMES, VAULT_BOOK
 from studies.template import bracket

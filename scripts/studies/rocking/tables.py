@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from bench.table import percent
 from oracle.housner import Block
 
-from dem_cli.app.bench.table import percent
 from studies.rocking import defaults, ensembles, free_rocking, overturning
 from studies.template import minus
 from studies.template import table as markdown

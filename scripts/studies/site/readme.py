@@ -6,7 +6,8 @@ import re
 from pathlib import Path
 from typing import Any
 
-from dem_cli.app.bench.table import percent
+from bench.table import percent
+
 from studies import storage
 from studies.places import ROOT
 from studies.seeds.page import sentence

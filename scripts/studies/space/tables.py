@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from dem_cli.app.bench.table import percent
+from bench.table import percent
+
 from studies.template import table
 
 EXACT = ("structure", "by hand", "load", "DEM", "error", "path", "associated", "steps")

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bench.cases import FOLDER, KNOWN_STRUCTURES, SIZES, answer
+from bench.kernels import blocks_of
 from oracle.limit_lp import frictionless_heads, limit_load
 
-from dem_cli.app.bench.cases import FOLDER, KNOWN_STRUCTURES, SIZES, answer
-from dem_cli.app.bench.kernels import blocks_of
 from dem_cli.core.engine.properties import joint_properties, law_of
 from dem_cli.core.limit.analysis import limit_loads
 from dem_cli.masonry.assembly.solver_request import solver_request

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import pytest
-
-from dem_cli.app.bench.cases import SIZES
-from dem_cli.app.bench.kernels import COMPARED, FIRST_STEPS, KINDS, QUICK_BLOCKS, blocks_of, points_of, rows_of
-from dem_cli.app.bench.record import BenchOptions
+from bench.cases import SIZES
+from bench.kernels import COMPARED, FIRST_STEPS, KINDS, QUICK_BLOCKS, blocks_of, points_of, rows_of
+from bench.record import BenchOptions
 
 POINTS = 98  # of the wall of 21 blocks; as prisms it has two rows of them
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bench import precision
+from bench.cases import KNOWN_STRUCTURES, solve
+from bench.points import points_per_joint, refined, shares
 
-from dem_cli.app.bench import precision
-from dem_cli.app.bench.cases import KNOWN_STRUCTURES, solve
-from dem_cli.app.bench.points import points_per_joint, refined, shares
 from dem_cli.core.engine.properties import joint_properties, law_of
 from dem_cli.core.engine.simulation import Simulation
 from dem_cli.masonry.assembly.solver_request import solver_request

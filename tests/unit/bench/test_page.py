@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-
-from dem_cli.app.bench import page, registry
-from dem_cli.app.bench.record import GroupResult, group_table, read, record, records_of
+from bench import page, registry
+from bench.record import GroupResult, group_table, read, record, records_of
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 MACHINE = {"cores": 2, "processor": "some", "system": "Linux", "load": 0.5, "dem": "1", "python": "3.11"}

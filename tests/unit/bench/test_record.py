@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 
 import pytest
+from bench import timing
+from bench.record import GroupResult, as_json, group_table, read, record, records_of
+from bench.timing import TimedTask, in_turn
 
-from dem_cli.app.bench import timing
-from dem_cli.app.bench.record import GroupResult, as_json, group_table, read, record, records_of
-from dem_cli.app.bench.timing import TimedTask, in_turn
 from dem_cli.errors import UsageError
 
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bench.kernels import blocks_of
+from bench.record import BenchOptions
+from bench.spatial import compas_walls, mujoco_walls, peers, sizes
+from bench.spatial.associated import associated_job
+from bench.spatial.boxes import boxes_of
+from bench.spatial.cases import KNOWN_IN_SPACE, MANY, SIZES_IN_SPACE, wall_out_of_plane
 from synthetic.spatial_case import spatial_case
 
-from dem_cli.app.bench.kernels import blocks_of
-from dem_cli.app.bench.record import BenchOptions
-from dem_cli.app.bench.spatial import compas_walls, mujoco_walls, peers, sizes
-from dem_cli.app.bench.spatial.associated import associated_job
-from dem_cli.app.bench.spatial.boxes import boxes_of
-from dem_cli.app.bench.spatial.cases import KNOWN_IN_SPACE, MANY, SIZES_IN_SPACE, wall_out_of_plane
 from dem_cli.core.engine.properties import joint_properties, law_of
 from dem_cli.core.limit.analysis import limit_loads
 from dem_cli.masonry.assembly.assemble import assemble

@@ -6,11 +6,10 @@ from importlib import import_module
 
 import numpy as np
 import pytest
-
-from dem_cli.app.bench import tilting
-from dem_cli.app.bench.box2d_walls import inset
-from dem_cli.app.bench.cases import KNOWN_STRUCTURES
-from dem_cli.app.bench.others import engine_job
+from bench import tilting
+from bench.box2d_walls import inset
+from bench.cases import KNOWN_STRUCTURES
+from bench.others import engine_job
 
 SETTING = tilting.EngineSettings("a block", edge=1.0, gravity=10.0, step=0.01, iterations=(1,))
 
@@ -49,7 +48,7 @@ def test_what_falls_by_itself_has_no_load():
 
 @pytest.mark.parametrize("module", ["pymunk_walls", "box2d_walls"])
 def test_engines_get_our_model(module):
-    engine = import_module(f"dem_cli.app.bench.{module}")
+    engine = import_module(f"bench.{module}")
     pytest.importorskip(engine.PACKAGE)
     case, model = KNOWN_STRUCTURES["COL14"].build()
     world = engine.make(model, case.joints["dry"].friction, engine.SETTINGS[0], 0.0175)
@@ -65,7 +64,7 @@ def test_engines_get_our_model(module):
 @pytest.mark.parametrize("module", ["pymunk_walls", "box2d_walls"])
 def test_engines_find_the_sliding_load(module):
     """With a short time step both slide the top course at the friction, to a few per cent."""
-    engine = import_module(f"dem_cli.app.bench.{module}")
+    engine = import_module(f"bench.{module}")
     pytest.importorskip(engine.PACKAGE)
     job = engine_job(KNOWN_STRUCTURES["T21 μ 0.6"], engine, engine.SETTINGS[2], 0.02)
     job.once()

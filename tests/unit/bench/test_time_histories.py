@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bench.time_histories import LANDINGS, FirstMonitor, distance, landing_error
 from oracle.housner import Block, rock
 
-from dem_cli.app.bench.time_histories import LANDINGS, FirstMonitor, distance, landing_error
 from dem_cli.core.records.history_rows import Samples
 
 

@@ -27,7 +27,7 @@ import os
 from dem_cli.core.kernels.compilation.machine_code import cache_folder
 from dem_cli.core.kernels.planar_geometry import measure  # any kernel
 import numba
-os.environ["NUMBA_NUM_THREADS"] = "1"  # as `dem bench` does
+os.environ["NUMBA_NUM_THREADS"] = "1"  # as scripts/benchmark does
 numba.config.reload_config()
 assert numba.config.CACHE_DIR == str(cache_folder()), numba.config.CACHE_DIR
 """

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bench.cases import KNOWN_STRUCTURES, prisms
+from bench.kernels import simulation as wall_in_space
 from engine import running_wall, simulation, tables
 
-from dem_cli.app.bench.cases import KNOWN_STRUCTURES, prisms
-from dem_cli.app.bench.kernels import simulation as wall_in_space
 from dem_cli.core.engine.loops import compiled_advance
 from dem_cli.core.engine.simulation import Simulation
 from dem_cli.core.engine.threads.crew import called_by_all, crew_of

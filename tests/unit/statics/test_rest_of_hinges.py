@@ -1,9 +1,9 @@
 """Loads on structures in which nothing slides come to rest the fast way, and fail along a mechanism that is known."""
 
 import pytest
+from bench.cases import KNOWN_STRUCTURES
 
 from dem_cli.analyses.solve import solve
-from dem_cli.app.bench.cases import KNOWN_STRUCTURES
 from dem_cli.core.records.ports import Observer
 from dem_cli.core.statics import failure_load
 from dem_cli.core.statics.equilibrium import Verdict

@@ -27,7 +27,6 @@ _ROOT = Path(__file__).resolve().parents[3]
 _ROOMS = ("core/kernels", "core/laws", "core/links")
 _ELSEWHERE = (
     "core/arithmetic/symmetric_factors.py", "core/limit/front_factors.py", "core/limit/compiled_cones.py",
-    "app/bench/bare_loop.py",
 )  # fmt: skip
 
 

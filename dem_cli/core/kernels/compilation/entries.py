@@ -114,8 +114,7 @@ def keep_compiled(function: Callable, of: Any, code: bytes, module: Any) -> None
     if hindrance or of_python or entry not in called:
         why = hindrance or (f"it calls {of_python[0]}" if of_python else "it has no entry")
         name = f"{function.__module__}.{function.__qualname__}"
-        room = name.split(".")[:3]
-        fault = room[0] == __name__.partition(".")[0] and room[1:] != ["app", "bench"] and not why.startswith(_TAKES)
+        fault = name.partition(".")[0] == __name__.partition(".")[0] and not why.startswith(_TAKES)
         SWITCH.remark(f"numba is loaded in each process for {name}: {why}", fault)
         return
     undefined = _undefined(code)
