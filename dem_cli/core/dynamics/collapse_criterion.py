@@ -44,7 +44,7 @@ def fallen_blocks(sim: DynamicSimulation, analysis: ShakingRequest) -> np.ndarra
 
 
 def _measured(sim: DynamicSimulation, analysis: ShakingRequest) -> list[tuple[np.ndarray, np.ndarray, str, str]]:
-    """Compute the measures of a fall of the free blocks: values, limits, a word and a unit."""
+    """Compute the measures of a fall of the free blocks: values, limits, the verb for a message and a unit."""
     free, d = sim.free, sim.model.dimension
     leans = np.degrees(leans_of(sim.bodies.orientations[free]))
     sank = sim.reference_positions[free, d - 1] - sim.bodies.positions[free, d - 1]

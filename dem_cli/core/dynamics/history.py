@@ -182,7 +182,7 @@ class TimeHistory:
         return motion.fallen
 
     def _look_for_falls(self, motion: _Shaking, seen: MotionStretch) -> None:
-        """Peaks of the monitors, with those of the last stretch, and whether a block has fallen since."""
+        """Update the peaks of the monitors by the last stretch, and end the motion soon after a block has fallen."""
         self.extremes.see(seen)
         motion.fallen = fallen_block(self.sim, self.request.shaking)
         if motion.fallen is not None:
@@ -232,11 +232,11 @@ class TimeHistory:
             return Ending(MOVES, None, sim.time - motion_ends)
 
     def _every(self) -> int:
-        """Steps from one sample to the next."""
+        """Return the number of time steps from one sample to the next, at least 1."""
         return max(1, round(1.0 / (self.request.rate * self.step.step)))
 
     def _stretch(self, n_steps: int, every: int) -> MotionStretch:
-        """n_steps of motion, sampled every so many steps since the start of the run."""
+        """Advance by n_steps of ground motion, sampled every so many steps since the start of the run."""
         sim = self.sim
         seen = shaken_on(
             sim, self.ground, self.job.monitors, n_steps, every, self.snapshots if self.track.frames else None

@@ -39,7 +39,7 @@ def root_of_stiffness(joints: Joints, overlaps: np.ndarray) -> csr_array:
 
 
 def _alike(joints: Joints, whole: np.ndarray) -> list[np.ndarray]:
-    """Points of these joints along their outlines, those with equally many together, (n, count) each.
+    """Group joints by their number of contact points, in the order of their outlines, (n, count) each.
 
     Faces that may meet, and do not overlap, have none.
     """
@@ -51,7 +51,7 @@ def _alike(joints: Joints, whole: np.ndarray) -> list[np.ndarray]:
 
 
 def _around(joints: Joints, joint: int) -> list[int]:
-    """Points of a joint in the order of its outline; those without stiffness are none."""
+    """Return the contact points of a joint with stiffness, in the order of its outline."""
     used = [p for p in range(joints.starts[joint], joints.starts[joint + 1]) if joints.kn[p] > 0.0]
     if len(used) < 3 or not joints.fans[used].any():
         return used

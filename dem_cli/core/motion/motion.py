@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-ENDS_MOVING = 0.02  # end velocity over the largest one: more than this deserves a word
+ENDS_MOVING = 0.02  # end velocity over the largest one: more than this deserves a warning
 
 
 class Waveform(Protocol):

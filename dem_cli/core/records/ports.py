@@ -16,8 +16,8 @@ takes finished stages from what was kept, and works on where nothing was.
             work(looks)
 
 All that a stage changes are its arguments, or lasts in one of them (results/output/resume/kept_objects.py); what it
-tells the results is told again. A stage may have others inside: these are kept until it is finished, or offers to go on
-behind them. Here nothing is kept; results/output/resume/stages.py keeps them on disk.
+reports to the results is reported again. A stage may have others inside: these are kept until it is finished, or
+offers to go on behind them. Here nothing is kept; results/output/resume/stages.py keeps them on disk.
 """
 
 from __future__ import annotations
