@@ -29,3 +29,7 @@ def test_links_lead_somewhere():
     links = re.findall(r"\]\(([\w./-]+)(?:#[\w-]+)?\)", README.read_text(encoding="utf-8"))
     assert len(links) > 20
     assert not [link for link in links if not (ROOT / link).exists()]
+
+
+def test_at_most_200_lines():
+    assert len(README.read_text(encoding="utf-8").splitlines()) <= 200
