@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import replace
 from typing import Any
@@ -75,6 +76,7 @@ def answer(tables: Tables, geometry: str, *overrides: str, settings: Settings = 
 def apart(a: dict[str, Any], b: dict[str, Any]) -> float:
     """How far the brackets of two runs are apart, over the lower load; nothing where one of them found none."""
     (low, high), (other_low, other_high) = (run.get("failure_load_bracket") or (None, None) for run in (a, b))
-    if not (low and high and other_low and other_high):
+    if not (low and other_low):
         return 0.0
+    high, other_high = high or math.inf, other_high or math.inf  # it stands there, and nothing says where it fails
     return float(max(low - other_high, other_low - high, 0.0) / min(low, other_low))
