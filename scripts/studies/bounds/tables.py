@@ -20,7 +20,7 @@ ABOVE = 0.002  # relative, over the associated load: the resolution of DEM
 
 
 def values(found: Mapping[str, Any]) -> dict[str, Any]:
-    """What page.md.j2 shows."""
+    """Return the values that page.md.j2 shows."""
     rows = [row for name, row in found.items() if name != "machine"]
     below = [row for row in rows if row["least"] and row["dem"][0] > (1.0 + 0.005) * row["least"]]
     return {

@@ -35,7 +35,7 @@ class BuildingStudy(StudyRunner):
 
 
 def values(found: Mapping[str, Any]) -> dict[str, Any]:
-    """What page.md.j2 shows."""
+    """Return the values that page.md.j2 shows."""
     costs = {name: {**found[name], "table": stages(found[name])} for name in ("house", "town") if name in found}
     return {"house": None, "town": None, "bonds": bonds(found.get("bonds", []))} | costs
 

@@ -23,7 +23,7 @@ KEPT = ("status", "failure_load_bracket", "above_the_bound", "no_bound", "warnin
 
 
 def measure(seed: int) -> dict[str, Any]:
-    """All runs of the structure of a seed; more where geometries disagree or a bound is passed. Seconds of CPU."""
+    """Run the structure of a seed in both geometries; more often where these disagree or a bound is passed."""
     begun = time.process_time()
     tables, blocks, _ = structure(seed)
     row: dict[str, Any] = {
@@ -48,7 +48,7 @@ def measure(seed: int) -> dict[str, Any]:
 
 
 def looked_into(tables: Tables) -> dict[str, Any]:
-    """Why geometries disagree: other ways to the load in the fixed one, stiffer joints in the other, no sliding."""
+    """Run a structure whose geometries disagree by other ways to the load, on stiffer joints, and without sliding."""
     stiffness = replace(DEFAULT.stiffness, statics=STIFFER * DEFAULT.stiffness.statics)
     return {
         "by_path": answer(tables, "fixed", "analysis.start='path'"),
@@ -60,7 +60,7 @@ def looked_into(tables: Tables) -> dict[str, Any]:
 
 
 def answer(tables: Tables, geometry: str, *overrides: str, settings: Settings = DEFAULT) -> dict[str, Any]:
-    """What a run says of its load; `bound`: of the start, and where nothing rests there of where blocks rest."""
+    """Run a structure; returns its load, status, warnings, and its bound at the start or, if it falls there, at rest."""
     begun = time.process_time()
     asked = (f"analysis.kinematics={geometry!r}", f"analysis.max_steps={STEPS}", *overrides)
     try:
@@ -74,7 +74,7 @@ def answer(tables: Tables, geometry: str, *overrides: str, settings: Settings = 
 
 
 def apart(a: dict[str, Any], b: dict[str, Any]) -> float:
-    """How far the brackets of two runs are apart, over the lower load; nothing where one of them found none."""
+    """Return the distance of the brackets of two runs over the lower load; 0 where one of them has none."""
     (low, high), (other_low, other_high) = (run.get("failure_load_bracket") or (None, None) for run in (a, b))
     if not (low and other_low):
         return 0.0

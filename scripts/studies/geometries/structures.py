@@ -24,12 +24,12 @@ KINDS = [(kind, space) for space in (False, True) for kind in STRUCTURES if spac
 
 
 def seeds(each: int = 2) -> range:
-    """So many structures of each generator in each dimension that it has."""
+    """Return the seeds of `each` structures of every generator, in each dimension that it has."""
     return range(FIRST, FIRST + each * len(KINDS))
 
 
 def structure(seed: int) -> tuple[Tables, int, float]:
-    """The case of a seed, how many free blocks it has and its bound; the next try where dem refuses it, or where it
+    """Return the case of a seed, its number of free blocks and its bound; drawn again where dem refuses it, or where it
     does not stand.
     """
     for trial in range(MOST_TRIES):
@@ -48,7 +48,7 @@ def structure(seed: int) -> tuple[Tables, int, float]:
 
 
 def drawn(seed: int, trial: int) -> Tables:
-    """Any structure of the generator of a seed, whether it can be built or not."""
+    """Draw a structure of the generator of a seed, whether it can be built or not."""
     kind, space = KINDS[(seed - FIRST) % len(KINDS)]
     d = Draw(f"geometries {seed} {trial}")
     d.space = space
@@ -70,7 +70,7 @@ def drawn(seed: int, trial: int) -> Tables:
 
 
 def bound_of(loaded: Any, model: Model) -> float | None:
-    """The associated load of the geometry of the start; None: there is none."""
+    """Return the associated load of the initial geometry; None: there is none."""
     from dem_cli.core.engine.properties import joint_properties, law_of
     from dem_cli.core.limit.analysis import limit_loads
     from dem_cli.masonry.assembly.solver_request import solver_request
@@ -81,7 +81,7 @@ def bound_of(loaded: Any, model: Model) -> float | None:
 
 
 def off(tables: Tables, error: float = ERROR) -> Tables:
-    """The same structure with stones that are off by up to `error` [m]: laid again by dem, or each one too small."""
+    """Return a structure with stones off by up to `error` [m]: laid again by dem, or each one too small."""
     if tables["structure"][0]["kind"] in LAID:
         return tables | {"imperfection": [{"structure": "s", "height": [-error, error]}]}
     model = api.build_model(solution.from_tables(tables))
@@ -91,7 +91,7 @@ def off(tables: Tables, error: float = ERROR) -> Tables:
 
 
 def smaller(model: Model, set_back: np.ndarray) -> Iterator[Tables]:
-    """The blocks of a model as [[block]] tables; of free convex ones the farthest corner lies so far back [m],
+    """Return the blocks of a model as [[block]] tables; of free convex ones the farthest corner lies so far back [m],
     (n_blocks,).
     """
     for i, name in enumerate(model.block_ids):

@@ -33,7 +33,7 @@ UNKNOWN = "**not explained**"
 
 
 def values(found: Mapping[str, Row]) -> dict[str, Any]:
-    """What page.md.j2 shows."""
+    """Return the values that page.md.j2 shows: tables, counts and minutes of CPU."""
     rows = {seed: row for seed, row in found.items() if seed != "machine"}
     differ = {seed: row for seed, row in rows.items() if apart(row["drawn_fixed"], row["drawn_moving"]) > RESOLUTION}
     both = [row for row in rows.values() if all(load(row[name]) for name in ("drawn_fixed", "drawn_moving"))]
@@ -62,7 +62,7 @@ def values(found: Mapping[str, Row]) -> dict[str, Any]:
 
 
 def reasons(rows: Mapping[str, Row]) -> str:
-    """Runs with a load and no bound, each with what it says of that."""
+    """List runs with a load and no bound, each with the reason that it states."""
     missing = [
         f"* {seed}, {shown}: {row[name].get('no_bound', 'nothing is said')}"
         for seed, row in rows.items()
@@ -73,7 +73,7 @@ def reasons(rows: Mapping[str, Row]) -> str:
 
 
 def cells(seed: str, row: Row) -> list[str]:
-    """A row as text."""
+    """Format a row of the table."""
     drawn, moved = row["drawn_fixed"], row["off_moving"]
     named = row["kind"] + (", tilted" if row["pattern"] == "tilt" else "")
     first = [seed, named, f"{row['dimension']}D", str(row["blocks"]), f"{row['friction']:g}"]
@@ -87,7 +87,7 @@ def cells(seed: str, row: Row) -> list[str]:
 
 
 def shown(run: Row) -> str:
-    """A load; with a star where its bracket is wider than the resolution, in brackets where it did not converge."""
+    """Format a load; with a star where its bracket is wider than the resolution, in brackets where it did not converge."""
     if run["status"].startswith(FALLS):
         return "falls"
     if not load(run):
@@ -99,30 +99,30 @@ def shown(run: Row) -> str:
 
 
 def number(value: float | None) -> str:
-    """Five digits, or a dash."""
+    """Format a number with five digits, or a dash."""
     return "–" if value is None else f"{value:.5g}"
 
 
 def load(run: Row) -> float | None:
-    """The highest equilibrium."""
+    """Return the load of the highest equilibrium."""
     return (run.get("failure_load_bracket") or [None])[0]
 
 
 def says(row: Row) -> bool:
-    """Whether one of both runs says that methods differ."""
+    """Test whether one of two runs warns that methods differ."""
     words = [text for name in ("drawn_fixed", "drawn_moving") for text in row[name].get("warnings", [])]
     return any("methods differ" in text for text in words)
 
 
 def explained(seed: str, row: Row) -> list[str]:
-    """A disagreement as text."""
+    """Format a disagreement of both geometries."""
     fixed, moving = row["drawn_fixed"], row["drawn_moving"]
     others = [number(load(row[name])) for name in ("by_path", "by_limit", "stiffer", "rough_fixed", "rough_moving")]
     return [seed, number(load(fixed)), number(load(moving)), percent(apart(fixed, moving)), *others, why(row)]
 
 
 def why(row: Row) -> str:
-    """What the runs that were made say of a disagreement."""
+    """Name the cause of a disagreement by the runs that were made of it."""
     fixed, moving = load(row["drawn_fixed"]) or 0.0, load(row["drawn_moving"]) or 0.0
     path, limit, stiffer = (load(row[name]) or 0.0 for name in ("by_path", "by_limit", "stiffer"))
     if abs(path - moving) <= RESOLUTION * moving:
@@ -133,7 +133,7 @@ def why(row: Row) -> str:
 
 
 def over(seed: str, name: str, row: Row) -> list[str]:
-    """A load above the bound of the start, or of where blocks rest, as text."""
+    """Format a load above the bound of the start, or of where blocks rest."""
     run, less = row[name], row.get("less_off")
     above = run["above_the_bound"]
     start = "none stands" if above["bound"] == above["bound_where_it_rests"] else number(above["bound"])
@@ -143,7 +143,7 @@ def over(seed: str, name: str, row: Row) -> list[str]:
 
 
 def problems(row: Row) -> list[str]:
-    """Loads above their bound without a word."""
+    """List loads above their bound without a warning."""
     return [
         f"{row['kind']}, {shown}: {load(row[name]):.5g} above {row[name]['bound']:.5g} without a word"
         for name, shown in RUNS.items()

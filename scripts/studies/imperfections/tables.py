@@ -21,7 +21,7 @@ ANSWERS = {"first": ("ok", FALLS), "last": ("ok",)}
 
 
 def values(table: Mapping[str, Any]) -> dict[str, Any]:
-    """What page.md.j2 shows of imperfections.json."""
+    """Return the values that page.md.j2 shows of imperfections.json."""
     rows = table["rows"]
     plain = next(row for row in rows if not row["block"])
     one, half = (math.tan(math.atan(FRICTION) - e / HALF_BLOCK) for e in (1.0, 0.5))

@@ -127,7 +127,7 @@ def row_of(row: Mapping[str, Any]) -> list[str]:
 
 
 def values(kept: Mapping[str, Any]) -> dict[str, Any]:
-    """What page.md.j2 shows."""
+    """Return the values that page.md.j2 shows."""
     head = [
         *("command", "runs for", "load", "signal", "interrupts", "130", "0", "unbegun", "median", "95 %", "longest"),
         *("CPU: median", "95 %", "most", f"above {LIMIT:g} s", "wrong"),

@@ -25,7 +25,7 @@ KNOWN = {
 
 
 def values(table: Mapping[str, Any]) -> dict[str, Any]:
-    """What page.md.j2 shows of loads.json."""
+    """Return the values that page.md.j2 shows of loads.json."""
     rows = rows_of(table)
     loads = ("case", "blocks", "associated", "path", "fine path", "DEM from gravity", "bracket", "error", "dem run",
              "error")  # fmt: skip

@@ -18,7 +18,7 @@ LAWS = ("law", "peak", "plane [mm]", "in space [mm]", "difference", "plane, othe
 
 
 def values(found: Mapping[str, Any]) -> dict[str, Any]:
-    """What page.md.j2 shows."""
+    """Return the values that page.md.j2 shows."""
     shown = {name: table(SINGLE, map(cells, found.get(name, []))) for name in ("rocking", "sliding", "flight")}
     rows = [(case, each) for case in found.get("twins", []) for each in case["quantities"]]
     told = [each for _, each in rows if each["allowed"] is not None or isinstance(each["plane"], bool)]

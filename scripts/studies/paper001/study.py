@@ -22,7 +22,7 @@ class PaperStudy(StudyRunner):
 
 
 def values(found: Mapping[str, Any]) -> dict[str, Any]:
-    """What page.md.j2 shows."""
+    """Return the values that page.md.j2 shows."""
     return walls.values(found) | statistics.values(found) | house.values(found)
 
 

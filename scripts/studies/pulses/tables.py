@@ -20,7 +20,7 @@ THEIR_FREE = {"elastic_s5": (11.08, 0.0505), "elastic_mx5": (12.57, 0.0520)}  # 
 
 
 def values(table: Mapping[str, Any]) -> dict[str, Any]:
-    """What page.md.j2 shows of pulses.json."""
+    """Return the values that page.md.j2 shows of pulses.json."""
     vault, ranges = table["vault"], _again(table["column"])
     case = vault["variants"][0]
     return {

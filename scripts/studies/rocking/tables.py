@@ -18,7 +18,7 @@ THIRD = 60  # pairs that are judged by themselves too
 
 
 def values(table: Mapping[str, Any]) -> dict[str, Any]:
-    """What page.md.j2 shows of rocking.json."""
+    """Return the values that page.md.j2 shows of rocking.json."""
     errors = [row["error"] for row in table["bounds"]]
     found = [abs(error) for error in errors if error is not None]
     return {

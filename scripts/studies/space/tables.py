@@ -15,7 +15,7 @@ TWINS = ("case", "blocks", "plane", "in space", "difference", "brackets", "steps
 
 
 def values(found: Mapping[str, Any]) -> dict[str, Any]:
-    """What page.md.j2 shows."""
+    """Return the values that page.md.j2 shows."""
     hand, walls, twins, published = (found.get(name, []) for name in ("by_hand", "walls", "twins", "published"))
     errors = [abs(middle(row) / row["load"] - 1.0) for row in hand if "twisted" not in row["name"]]
     loads = [row for row in twins if difference(row) is not None]

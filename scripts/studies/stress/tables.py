@@ -27,7 +27,7 @@ def count(records: Iterable[StressRecord]) -> str:
 
 
 def values(records: Sequence[StressRecord], about: Mapping[str, str]) -> dict[str, Any]:
-    """What page.md.j2 shows; `about` says in a sentence what each axis is."""
+    """Return the values that page.md.j2 shows; `about` says in a sentence what each axis is."""
     axes = {name: [r for r in records if r.axis == name] for name in dict.fromkeys(r.axis for r in records)}
     rows = [[name, *counts(found), worst(found)] for name, found in axes.items()]
     return {
