@@ -60,7 +60,7 @@ def looked_into(tables: Tables) -> dict[str, Any]:
 
 
 def answer(tables: Tables, geometry: str, *overrides: str, settings: Settings = DEFAULT) -> dict[str, Any]:
-    """Run a structure; returns its load, status, warnings, and its bound at the start or, if it falls there, at rest."""
+    """Run a structure; returns load, status, warnings and the bound, of the start or of where its blocks rest."""
     begun = time.process_time()
     asked = (f"analysis.kinematics={geometry!r}", f"analysis.max_steps={STEPS}", *overrides)
     try:

@@ -87,7 +87,7 @@ def cells(seed: str, row: Row) -> list[str]:
 
 
 def shown(run: Row) -> str:
-    """Format a load; with a star where its bracket is wider than the resolution, in brackets where it did not converge."""
+    """Format a load, with a star for a wide bracket, in parentheses where it did not converge."""
     if run["status"].startswith(FALLS):
         return "falls"
     if not load(run):
