@@ -110,7 +110,9 @@ class StartBound:
         job.clock.progress("limit analysis", 0.0, 0.0, None)
         self.loads = loads = with_path(loads, job.settings.limit)
         path = loads.non_associated
-        if path is not None and path.load is not None and path.finished and path.load <= low * (1.0 + resolution):
+        if path is None or path.load is None or not path.finished:
+            search.alone = True
+        elif path.load <= low * (1.0 + resolution):
             search.path_of_start = path.load
 
 

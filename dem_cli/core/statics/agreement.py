@@ -147,6 +147,11 @@ def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None
             f"the path was not followed to its end: from there the load was raised in steps to {search.carried:.5g}, "
             "and no second history says whether others end lower"
         )
+    if search.alone:
+        said.append(
+            "no second history says whether others end lower: the zero-dilation path in the geometry of the start "
+            "was not followed to its end"
+        )
     if search.wide and search.width is not None:
         said.append(
             f"{_reached(search)} {search.carried:.5g}; not above {search.failed:.5g}: this bracket "
