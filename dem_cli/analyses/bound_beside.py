@@ -93,10 +93,10 @@ class StartBound:
         """Follow the zero-dilation path of the initial geometry as a second load history of a moving-geometry search.
 
         Only where nothing but the way of loading parts them: joints as stiff as dem chooses, no gaps that close. What
-        blocks carry below it because they move is no other history: then the search is left as it is.
+        blocks carry below it because they have moved is no other history: then the search is left as it is.
         """
         job, low, resolution = self.job, search.low, self.job.case.analysis.resolution
-        if not (search.found and low) or self.asked or not _differs_by_its_history(job, sim):
+        if not (search.found and low) or not _differs_by_its_history(job, sim):
             return
         loads = self.loads
         if (
@@ -105,14 +105,15 @@ class StartBound:
             or abs(loads.associated.upper - low) <= resolution * abs(low)
         ):
             return
-        from dem_cli.core.limit.analysis import with_path
+        if not self.asked:  # else the path is there
+            from dem_cli.core.limit.analysis import with_path
 
-        job.clock.progress("limit analysis", 0.0, 0.0, None)
-        self.loads = loads = with_path(loads, job.settings.limit)
-        path = loads.non_associated
+            job.clock.progress("limit analysis", 0.0, 0.0, None)
+            self.loads = loads = with_path(loads, job.settings.limit)
+        path, still = loads.non_associated, search.peak_displacement <= resolution * sim.smallest
         if path is None or path.load is None or not path.finished:
             search.alone = True
-        elif path.load <= low * (1.0 + resolution):
+        elif still or path.load <= low * (1.0 + resolution):
             search.path_of_start = path.load
 
 

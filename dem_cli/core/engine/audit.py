@@ -32,6 +32,8 @@ def warnings(request: SolverRequest, sims: list[Simulation], found: dict[str, An
         crushes = any(getattr(joint, "compression", None) is not None for joint in request.joints.named.values())
         why = "stone that is crushed, beside what joints give" if crushes else "the joints are too soft"
         said.append(f"blocks overlap by {overlap:.1%} of the smallest edge: {why}")
+    elif overlap > doubts.rigid_overlap and sims[0].takes_back and not sims[0].properties.given:
+        said.append(f"rigid blocks overlap by {overlap:.1%} of the smallest edge: do not trust this run")
     said += _reweighted(request, sims)
     said += (
         _leaning_automatically(request, sims[0])

@@ -11,9 +11,9 @@ instead, wherever the structure is at rest (Uzawa's iteration): a point keeps it
 and the blocks go back by the elastic displacements u that they had, found at once from K u = Bᵀ kn d, d being the
 closure of the points that press and K their stiffness, with next to none along the joints: what slid elastically goes
 back as well. Open points keep the gap that springs gave them, c ← c + Δg, so that the same points press as in fixed
-geometry; not where blocks have gaps beside them, which have to close. Forces stay; what is left is the change of the
-levers, some per cent of the first, so that each round leaves a small share of the lean of the one before:
-an equilibrium is one of rigid blocks, whatever kn.
+geometry: not what is more than springs do, nor where blocks have gaps beside them, which have to close. Forces stay;
+what is left is the change of the levers, some per cent of the first, so that each round leaves a small share of the
+lean of the one before: an equilibrium is one of rigid blocks, whatever kn.
 
 Not where joints bond, whose forces hang on their gaps, nor where kn is given. Reference: Simo and Laursen 1992, An
 augmented Lagrangian treatment of contact problems involving friction, Computers & Structures 42.
@@ -69,8 +69,11 @@ def take_back(sim: Simulation, points: np.ndarray) -> None:
     before = sim.measured().gaps
     moves.shift(sim, motion_that_opens(sim, points, before))
     gaps = sim.measured().gaps
-    # Open points stay open: beside gaps as far as geometry says, else by as much as springs opened them.
-    closure = np.minimum(gaps, 0.0) if sim.play.moved.any() else sim.contacts.closure + gaps - before
+    closure = np.minimum(gaps, 0.0)  # of open points: they stay open
+    if len(points) and not sim.play.moved.any():
+        sprung = sim.contacts.closure + gaps - before  # by as much as springs opened them, no farther
+        elastic = np.median(sim.contacts.normal[points] / sim.joints.kn[points])  # small faces close by far more
+        closure = np.where(np.abs(sprung) <= sim.settings.relief.pushed * elastic, sprung, closure)
     closure[points] = gaps[points] + sim.contacts.normal[points] / sim.joints.kn[points]
     sim.contacts.closure[:] = closure
     sim.contacts.gaps[:] = gaps  # the next step goes on from here

@@ -152,6 +152,7 @@ class DoubtSettings:
     uneven: float = 1e3  # how much faster than another a block may fall in pseudo-time
     closure: float = DOUBTFUL_CLOSURE  # energy error over the largest energy
     overlap: float = DOUBTFUL_OVERLAP  # in smallest edges
+    rigid_overlap: float = 3e-3  # the same where elastic closure is taken back: 1e-4 to 6e-4 were seen of sound runs
     reweighted: float = DOUBTFUL_REWEIGHTING  # of the energy, that went or came as the areas of contact points changed
     off_the_load: float = 0.02  # of the failure load, that the curve of the collapse may peak above or below it
     clamped: float = 0.02  # of the associated load, that a run with ties or bars may lie below it without a word
