@@ -47,7 +47,7 @@ class NewtonMatrix:
         both = np.stack([np.repeat(blocks, 2, axis=1), np.tile(blocks, 2)], axis=2)
         self.parts = parts_of(fronts, both.reshape(-1, 2)).reshape(-1, 2, 2, 3)
         first, row, column = parts_of(fronts, np.repeat(np.arange(len(fronts.order)), 2).reshape(-1, 2)).T
-        self.diagonal = (first[:, None] + (row + column)[:, None] * np.arange(n_dof)).ravel()
+        self.diagonal = (first[:, None] + (row + column)[:, None] * np.arange(n_dof)).ravel()[self.order]
         self.rows = np.ascontiguousarray(points.rows)
         self.joint_starts = np.flatnonzero(np.r_[True, (self.parts[1:] != self.parts[:-1]).any(axis=(1, 2, 3)), True])
         pairs = [(pair, k) for k, pair in enumerate(points.products)]
@@ -66,8 +66,8 @@ class NewtonMatrix:
     def factorised(self, factors: list[np.ndarray], more: np.ndarray | None = None) -> FrontFactors:
         """LU factors of the matrix whose products have these factors; those of the last call are lost.
 
-        more: what comes to its diagonal, (n_columns,); None: as little as makes it regular. Raises RuntimeError where
-        it is singular.
+        more: what comes to its diagonal, (n_columns,) in the order of elimination as right sides are; None: as little
+        as makes it regular. Raises RuntimeError where it is singular.
         """
         from dem_cli.core.limit.front_factors import add_to_diagonal, factorise
 

@@ -36,7 +36,9 @@ def factors(made, seed):
 @pytest.mark.parametrize(
     ("n_blocks", "n_points", "of_joint"), [(1, 4, 1), (12, 60, 1), (40, 160, 1), (90, 700, 1), (12, 120, 4)]
 )
-def test_fronts_solve_the_equations(dimension, n_blocks, n_points, of_joint):
+@pytest.mark.parametrize("viscous", [False, True])
+def test_fronts_solve_the_equations(dimension, n_blocks, n_points, of_joint, viscous):
+    """A viscosity of its own for each degree of freedom stands where this one does, whatever the order."""
     made = points(dimension, n_blocks, n_points, n_blocks, of_joint)
     right = np.random.default_rng(1).normal(size=made.n_columns)
     right[:2] = 0.0  # held
@@ -47,10 +49,14 @@ def test_fronts_solve_the_equations(dimension, n_blocks, n_points, of_joint):
             for p, factor in enumerate(given):
                 to = made.columns[p].ravel()
                 dense[np.ix_(to, to)] += factor * np.outer(made.rows[p, a].ravel(), made.rows[p, b].ravel())
+    viscosity = 10.0 ** np.random.default_rng(4).uniform(-3.0, 1.0, made.n_columns)
+    if viscous:
+        dense[:-1, :-1] += np.diag(viscosity)
     matrix = NewtonMatrix(made, SETTINGS)
     matrix.factorised(elastic)
     found = np.zeros(made.n_columns + 1)
-    found[matrix.order] = matrix.factorised(stiff).solve(right[matrix.order])
+    factored = matrix.factorised(stiff, viscosity[matrix.order] if viscous else None)
+    found[matrix.order] = factored.solve(right[matrix.order])
     touched = np.append(np.abs(dense[:-1, :-1]).sum(axis=1) > 0.0, False)
     off = (dense @ found)[touched] - np.append(right, 0.0)[touched]
     assert np.abs(off).max() < 1e-6 * np.abs(right).max()
