@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 from engine import block, rectangle, solve, tables
 
+from dem_cli.core.engine import measures
+
 GROUND = block("ground", rectangle(-3, -1, 6, 0), fixed=True)
 CRATE = block("crate", rectangle(0, 0, 1, 1))
 
@@ -60,3 +62,14 @@ def test_soft_given_joints_under_geometry_that_moves(softness, points, warns):
     joint |= {} if points is None else {"points": points}
     text = said(needle, joints={"dry": joint}, analysis={"kinematics": "large", "follow": 0.0})
     assert ("of their width" in text) is warns
+
+
+@pytest.mark.parametrize(
+    ("share", "more", "warns"), [(0.002, {}, False), (0.004, {}, True), (0.004, {"kn": 1e11}, False)]
+)
+def test_rigid_blocks_that_overlap(share, more, warns, monkeypatch):
+    """Joints of kn = "auto" show no closure at rest; those of a given stiffness sink in by what it gives."""
+    monkeypatch.setattr(measures, "largest_overlap", lambda sim: share * sim.smallest)
+    joints = {"dry": {"friction": 0.6} | more}
+    warned = said(CRATE, joints=joints, analysis={"kind": "gravity", "kinematics": "large"})
+    assert ("rigid blocks overlap by 0.4%" in warned) is warns
