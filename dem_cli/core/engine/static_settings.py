@@ -116,7 +116,6 @@ class ImplicitHistorySettings:
     verdicts."""
 
     blocks: int = 150  # of one structure in the plane, from which on it is quicker than the path and loads after it
-    blocks_in_space: int = 300  # the same in space
     effort: float = 2e7  # factorisations × points before giving up
     narrow: float = 0.5  # of the resolution: width of the bracket, so that a load beyond it fails soon
     shares: tuple[float, ...] = (0.5, 0.8, 0.9)  # of the bound: first loads

@@ -223,9 +223,8 @@ class LoadSearch:
         answer, limits, scale, resolution = self.answer, self.answer.limits, self.sim.live_scale, self.resolution
         if limits is None or answer.bound is None or not limits.slides:
             return False
-        of = self.sim.settings.implicit_history
-        least = of.blocks if self.sim.model.dimension == 2 else of.blocks_in_space
-        if limits.largest < least or limits.too_large:
+        plane = self.sim.model.dimension == 2  # in space it takes as long as the path, and fails more often
+        if not plane or limits.largest < self.sim.settings.implicit_history.blocks or limits.too_large:
             return False
         beside = limits.largest <= self.sim.settings.warm_start.beside_implicit and limits.path is not None
         if beside and self._path_meets_the_bound():
