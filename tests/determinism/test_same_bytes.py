@@ -118,7 +118,7 @@ LONELY = {
 
 def numbers(summary: dict, records) -> list:
     """Every number of an answer that is not about time."""
-    timed = ("seconds", "solve_seconds", "compile_seconds")
+    timed = ("seconds", "solve_seconds", "solve_cpu_seconds", "compile_seconds")
     kept = {key: value for key, value in summary.items() if key not in timed}
     kept["start"] = {key: value for key, value in (kept.get("start") or {}).items() if key not in timed}
     rows = [tuple(row) for row in records.rows]

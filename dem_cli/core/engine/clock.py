@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from importlib import import_module
 from typing import TYPE_CHECKING, TypeVar
 
@@ -21,32 +22,47 @@ AnySimulation = TypeVar("AnySimulation", bound="Simulation")
 
 
 class Clock(Observer):
-    """Seconds of solving, without the compilation of kernels and what the observer does with results.
+    """Seconds of solving, by the wall and of CPU, without the compilation of kernels and what the observer does with
+    results.
 
     It is an observer itself and hands everything on.
     """
 
     def __init__(self, observer: Observer) -> None:
         self.started, self.compiling, self.observing = time.perf_counter(), 0.0, 0.0
+        self._started_cpu, self._cpu_off = time.process_time(), 0.0
         self.observer, self.stages = observer, observer.stages
+
+    @contextmanager
+    def _observing(self) -> Iterator[None]:
+        """Stop the clock while the observer is busy."""
+        begun, cpu = time.perf_counter(), time.process_time()
+        yield
+        self.observing += time.perf_counter() - begun
+        self._cpu_off += time.process_time() - cpu
+
+    @contextmanager
+    def _preparing(self) -> Iterator[None]:
+        """Stop the clock while kernels are compiled or modules imported."""
+        begun, cpu = time.perf_counter(), time.process_time()
+        yield
+        self.compiling += time.perf_counter() - begun
+        self._cpu_off += time.process_time() - cpu
 
     def frame(self, frame: Frame) -> None:
         """Pass a frame to the observer, off the clock."""
-        begun = time.perf_counter()
-        self.observer.frame(frame)
-        self.observing += time.perf_counter() - begun
+        with self._observing():
+            self.observer.frame(frame)
 
     def row(self, row: HistoryRow) -> None:
         """Pass a row to the observer, off the clock."""
-        begun = time.perf_counter()
-        self.observer.row(row)
-        self.observing += time.perf_counter() - begun
+        with self._observing():
+            self.observer.row(row)
 
     def samples(self, samples: Samples) -> None:
         """Pass samples to the observer, off the clock."""
-        begun = time.perf_counter()
-        self.observer.samples(samples)
-        self.observing += time.perf_counter() - begun
+        with self._observing():
+            self.observer.samples(samples)
 
     def runs(self, rows: Sequence[RunRow]) -> None:
         """Pass the table of all runs to the observer."""
@@ -58,31 +74,34 @@ class Clock(Observer):
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """Pass the progress of the run to the observer, off the clock."""
-        begun = time.perf_counter()
-        self.observer.progress(stage, load, displacement, fraction)
-        self.observing += time.perf_counter() - begun
+        with self._observing():
+            self.observer.progress(stage, load, displacement, fraction)
 
     def compiled(self, make: Callable[[], AnySimulation]) -> AnySimulation:
         """Make a simulation with its kernels compiled or loaded off the clock, and all else on it."""
         compilation = Compilation(lambda: self.progress("compiling (once)", 0.0, 0.0, None))
         with compilation.heard():
-            sim = make()
+            sim, made = make(), compilation.seconds
             sim.stages = self.stages
-            built, made = time.perf_counter(), compilation.seconds
-            with at_once():  # a minute, the first time
+            with self._preparing(), at_once():  # a minute, the first time
                 sim.compile()
-        self.compiling += made + time.perf_counter() - built
+        self.compiling += made
+        self._cpu_off += made  # one thread compiles
         return sim
 
     def imported(self, module: str) -> None:
         """Import a module that only some runs need, off the clock."""
-        begun = time.perf_counter()
-        import_module(module)
-        self.compiling += time.perf_counter() - begun
+        with self._preparing():
+            import_module(module)
 
     def seconds(self) -> float:
         """Seconds of solving so far, with those before a run that was resumed."""
         return self.stages.before + time.perf_counter() - self.started - self.compiling - self.observing
+
+    def cpu_seconds(self) -> float | None:
+        """CPU seconds of this process for solving so far, of all its threads; None for a run that was resumed."""
+        spent = time.process_time() - self._started_cpu - self._cpu_off
+        return None if self.stages.before else max(spent, 0.0)
 
 
 def duration_words(value: float) -> str:

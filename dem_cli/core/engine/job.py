@@ -130,6 +130,7 @@ class Job:
             "steps": sims[-1].steps,
             "time_step": 1.0,
             "solve_seconds": self.clock.seconds(),
+            "solve_cpu_seconds": self.clock.cpu_seconds(),
             "compile_seconds": self.clock.compiling,
             "energy_closure": worst,
             **measures.reweighting(sims),

@@ -60,6 +60,7 @@ ORDER = (
     "steps",
     "time_step",
     "solve_seconds",
+    "solve_cpu_seconds",
     "wall_seconds",
     "energy_closure",
     "reweighting",

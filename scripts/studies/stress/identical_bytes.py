@@ -14,7 +14,7 @@ import h5py
 
 from studies.places import CASES, ROOT
 
-TIMES = {"solve_seconds", "compile_seconds", "wall_seconds", "started", "finished", "output"}
+TIMES = {"solve_seconds", "solve_cpu_seconds", "compile_seconds", "wall_seconds", "started", "finished", "output"}
 
 
 def differences(stem: str) -> list[str]:

@@ -29,7 +29,7 @@ COLUMN = {
     "output": {"frames": 5},
     "monitor": [{"block": "column-2", "component": "x"}],
 }
-TIMES = ("wall_seconds", "solve_seconds", "compile_seconds")
+TIMES = ("wall_seconds", "solve_seconds", "solve_cpu_seconds", "compile_seconds")
 
 
 @pytest.fixture(autouse=True)

@@ -24,6 +24,7 @@ from dem_cli.results.output.ending import ending_words, last_words, unfound_load
 _FIRST_BAR = 0.5  # s of run before a bar appears: short runs stay silent and need no rich
 _BAR_EVERY = 0.1  # s
 _LINE_EVERY = 10.0  # s
+_ELSEWHERE = 0.1  # of the wall time, by which CPU time differs where both are named
 _COMPILING = "compiling"  # begins the name of the stage
 
 
@@ -245,8 +246,14 @@ def _measure(value: float | None, unit: str) -> str:
 
 def _cost_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     counts = [f"{summary[key]:,} {key}" for key in ("blocks", "joints", "steps") if summary.get(key) is not None]
-    time_text = seconds(summary["solve_seconds"]) if summary.get("solve_seconds") is not None else ""
-    return [("solved in", " · ".join([time_text, *counts] if time_text else counts))] if counts else []
+    if not counts:
+        return []
+    wall, cpu = summary.get("solve_seconds"), summary.get("solve_cpu_seconds")
+    if wall is not None and cpu is not None and abs(cpu - wall) > _ELSEWHERE * wall:
+        counts.insert(0, f"{seconds(wall)} ({seconds(cpu)} of CPU)")
+    elif wall is not None:
+        counts.insert(0, seconds(wall))
+    return [("solved in", " · ".join(counts))]
 
 
 def limit_answer(summary: Mapping[str, Any], folder: Path | None = None) -> str:

@@ -369,6 +369,7 @@ class RunSummary(SummaryTable):
     contacts: Count | None = None
     steps: Count | None = None
     solve_seconds: Maybe = None
+    solve_cpu_seconds: Maybe = None
     energy_closure: Maybe = None
     reweighting: FoundReweighting | None = None
     largest_overlap: Maybe = None
