@@ -112,7 +112,7 @@ class StartBound:
             self.loads = loads = with_path(loads, job.settings.limit)
         path, still = loads.non_associated, search.peak_displacement <= resolution * sim.smallest
         if path is None or path.load is None or not path.finished:
-            search.alone = True
+            search.alone = "the zero-dilation path in the geometry of the start was not followed to its end"
         elif still or path.load <= low * (1.0 + resolution):
             search.path_of_start = path.load
 

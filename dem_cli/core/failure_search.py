@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from dem_cli.core.engine.track import Track
 
 INTERRUPTED = "interrupted"
+UNFINISHED = "the zero-dilation path was not followed to its end"
 
 
 def failure_search(
@@ -161,12 +162,15 @@ def _second_history(job: Job, load_search: LoadSearch) -> None:
         return
     if implicit and load_search.run_again_in_small_implicit_steps():
         return
+    ends = path.load is not None and path.finished
     if search.limits.largest > job.settings.warm_start.repeated:
         job.skipped.append("the load again in small steps: too many blocks")
+        search.alone = "" if ends else f"{UNFINISHED}, and a structure of so many blocks is not pushed again"
     elif search.carried > job.settings.load_search.least * search.scale and search.start["kind"] in (GRAVITY, IMPLICIT):
         load_search.run_again_in_small_steps(2.0 ** ceil(log2(search.carried)))
         if search.earlier is None:
             job.skipped.append("the load again in small steps: not finished; it is that of larger steps")
+            search.alone = "" if ends else f"{UNFINISHED}, nor was the load raised again in small steps"
 
 
 def _changed(load: float, rigid: float, searched: bool, lowered: float) -> list[str]:

@@ -8,6 +8,7 @@ import pytest
 
 import dem_cli
 from dem_cli.core.engine.static_settings import LoadSearchSettings
+from dem_cli.core.limit.path import Path
 from dem_cli.core.statics.failure_load import LoadSearch
 
 WALL = """
@@ -77,3 +78,16 @@ def test_small_steps_that_cost_too_much_leave_the_load_of_larger_ones(tmp_path, 
     assert tuple(summary["failure_load_bracket"]) == found[0]
     assert "the load again in small steps: not finished; it is that of larger steps" in summary["skipped"]
     assert tried[0] == 1.0 if seen else tried[0] > 1.5
+
+
+@pytest.mark.parametrize("ends", [True, False])
+def test_a_load_says_that_it_stands_alone_where_small_steps_and_path_have_no_end(tmp_path, monkeypatch, ends):
+    """Until 0.21 the load of larger steps had no word on it, but under `skipped`."""
+    case = tmp_path / "wall.toml"
+    case.write_text(WALL)
+    monkeypatch.setattr(LoadSearch, "run_again_in_small_steps", lambda self, most: None)
+    monkeypatch.setattr(Path, "finished", ends)
+    summary = dem_cli.run(case).summary
+    assert summary["status"] == "ok"
+    alone = [text for text in summary["warnings"] if text.startswith("no second history says")]
+    assert len(alone) == (0 if ends else 1)

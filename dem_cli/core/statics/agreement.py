@@ -148,10 +148,7 @@ def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None
             "and no second history says whether others end lower"
         )
     if search.alone:
-        said.append(
-            "no second history says whether others end lower: the zero-dilation path in the geometry of the start "
-            "was not followed to its end"
-        )
+        said.append(f"no second history says whether others end lower: {search.alone}")
     if search.wide and search.width is not None:
         said.append(
             f"{_reached(search)} {search.carried:.5g}; not above {search.failed:.5g}: this bracket "

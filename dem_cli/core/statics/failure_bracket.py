@@ -55,7 +55,7 @@ class FailureLoad:
     limits: RigidLimits | None = None  # limit analysis of the same structure
     raised: float | None = None  # highest load that was raised from gravity beside an implicit history
     path_of_start: float | None = None  # where blocks move: load of the zero-dilation path in the geometry of the start
-    alone: bool = False  # where blocks move: that path has no end, so that no second history stands beside the load
+    alone: str = ""  # why no second history stands beside the load, where one was looked for
 
     @property
     def carried(self) -> float:

@@ -101,5 +101,5 @@ def test_a_load_of_blocks_that_move_with_no_second_history_says_so():
     moving = search(0.3602)
     moving.limits, moving.bound = None, None
     assert doubts(moving, RESOLUTION, None) == []
-    moving.alone = True
+    moving.alone = "the zero-dilation path in the geometry of the start was not followed to its end"
     assert doubts(moving, RESOLUTION, None)[0].startswith("no second history says whether others end lower")
