@@ -32,8 +32,8 @@ def order_rows(starts, columns, degrees, ascending, order, waits):
     diagonal (E. Cuthill, J. McKee, Reducing the bandwidth of sparse symmetric matrices, Proc. 24th ACM National
     Conference 1969, 157).
 
-    starts, columns: entries of each row; degrees: of each row, (n,); ascending: rows in the order of their degrees, from
-    which each part that hangs together begins, (n,); order: found, (n,); waits: room, (n,) of ones.
+    starts, columns: entries of each row; degrees: of each row, (n,); ascending: rows in the order of their degrees,
+    from which each part that hangs together begins, (n,); order: found, (n,); waits: room, (n,) of ones.
     """
     found = 0
     for k in range(len(ascending)):

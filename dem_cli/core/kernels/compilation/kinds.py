@@ -44,7 +44,8 @@ def kind_of(value: Any) -> str:
 def words_of(value: Any, held: Held, before: Held) -> list[int]:
     """Lay out an argument in machine words as numba does.
 
-    held: what must live as long as that is used, filled here; before: of the last call, whose arrays are where they were.
+    held: what must live as long as that is used, filled here; before: that of the last call, whose arrays are where
+    they were.
     """
     kind = type(value)
     if kind is np.ndarray:
