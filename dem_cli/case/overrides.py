@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -61,6 +62,7 @@ def plain_value(value: Any, where: str) -> Any:
     raise UsageError(f"{where}: {value!r} is no value of a case file: give a number, truth, text, list or table")
 
 
+@lru_cache(maxsize=64)  # a sweep asks for the same one in each of its runs
 def key_path(text: str) -> KeyPath:
     """Split `joints.dry.friction` into its keys; () for a text that is no key path."""
     try:

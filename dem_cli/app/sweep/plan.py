@@ -229,6 +229,8 @@ def _drawn_points(samples: Mapping[str, tuple[KeyPath, Mapping[str, Any]]], coun
 
 def _plain(value: Any) -> Any:
     """Convert tuples to lists, as in TOML."""
+    if isinstance(value, (float, int, str)):  # most of a million
+        return value
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]
     return {key: _plain(item) for key, item in value.items()} if isinstance(value, Mapping) else value

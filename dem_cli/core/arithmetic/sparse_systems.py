@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem_cli.core.arithmetic.symmetric_factors import count_entries, factorise_symmetric, solve_symmetric
+from dem_cli.core.arithmetic.symmetric_factors import count_entries, factorise_symmetric, order_rows, solve_symmetric
 
 if TYPE_CHECKING:
     from scipy.sparse import sparray, spmatrix
@@ -22,10 +22,9 @@ class SymmetricFactors:
 
     def __init__(self, matrix: sparray | spmatrix) -> None:
         from scipy.sparse import csc_array
-        from scipy.sparse.csgraph import reverse_cuthill_mckee
 
         whole = csc_array(matrix)
-        self.order, n = reverse_cuthill_mckee(whole.tocsr(), symmetric_mode=True).astype(np.int64), whole.shape[0]
+        self.order, n = narrow_order(whole), whole.shape[0]
         ordered = csc_array(whole[self.order][:, self.order])
         whole_matrix = ordered.indptr.astype(np.int64), ordered.indices.astype(np.int64), ordered.data
         parents, counts, seen = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
@@ -49,6 +48,21 @@ class SymmetricFactors:
         solve_symmetric(self.factors, x)
         found[self.order] = x
         return found
+
+
+def narrow_order(matrix: sparray | spmatrix) -> np.ndarray:
+    """Find the order of rows and columns, (n,), in which a sparse symmetric matrix has its entries near the diagonal.
+
+    That of `scipy.sparse.csgraph.reverse_cuthill_mckee`, which loads half of SciPy.
+    """
+    by_rows = matrix.tocsr()
+    n, starts, columns = by_rows.shape[0], by_rows.indptr.astype(np.int64), by_rows.indices.astype(np.int64)
+    degrees = np.diff(starts)
+    diagonal = columns[columns == np.repeat(np.arange(n), degrees)]
+    degrees += np.bincount(diagonal, minlength=n) > 0  # its entry counts twice
+    order = np.empty(n, np.int64)
+    order_rows(starts, columns, degrees, np.argsort(degrees), order, np.ones(n, np.int64))
+    return np.ascontiguousarray(order[::-1])
 
 
 def solved_symmetric(matrix: sparray | spmatrix, right: np.ndarray) -> np.ndarray:

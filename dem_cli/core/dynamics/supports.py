@@ -60,6 +60,8 @@ def lost_supports(sim: DynamicSimulation, least: np.ndarray) -> np.ndarray:
         return found
     up = sim.model.dimension - 1
     sank = sim.reference_positions[:, up] - sim.bodies.positions[:, up]
+    if not (sank[sim.free] > least).any():
+        return found
     lowered = np.full(len(sank), np.inf)  # by which a block sank farther than all that carried it; inf: nothing did
     with_it = np.maximum(sank[_block_of(sim, carriers.faces)], 0.0)
     np.minimum.at(lowered, carriers.blocks, sank[carriers.blocks] - with_it)

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from dem_cli.core.records.requests import MonitorRequest
 
 GAUGES = {"displacement": slot.PLACE, "velocity": slot.SPEED, "rotation": slot.TURN}  # whose extremes are of all steps
+_NOTHING_YET = (-np.inf, 0.0, np.inf, 0.0)  # a row of Gauges.found, and of `extremes`
 OF_BASE = {"acceleration": 0, "velocity": 1, "displacement": 2}  # as records.history_rows.Samples.base
 
 
@@ -279,13 +280,21 @@ class Monitors:
 
     def gauges(self, base: np.ndarray) -> Gauges:
         """Gauges of `gauged`, in their order, for one stretch. base: as Gauges.base."""
-        d, gauged = self.model.dimension, self.gauged
-        points = [point for monitor in gauged for point in monitor.points]
-        places = self._points
+        found = np.full((len(self.gauged), 4), _NOTHING_YET)
+        given = self._gauges._replace(base=base, found=found, tally=np.array([np.inf, 0.0]))
+        return given._replace(arms=self._points.strained[self._gauged_points]) if self.model.n_modes else given
+
+    @property
+    def _gauged_points(self) -> list[int]:
+        return [point for monitor in self.gauged for point in monitor.points]
+
+    @cached_property
+    def _gauges(self) -> Gauges:
+        """What is the same in all stretches, but for the arms of points on blocks that deform."""
+        d, gauged, places, points = self.model.dimension, self.gauged, self._points, self._gauged_points
         axes = np.zeros((len(gauged), d))
         for row, monitor in zip(axes, gauged):
             row[:] = 0.0 if monitor.along is None else monitor.along
-        found = np.tile([-np.inf, 0.0, np.inf, 0.0], (len(gauged), 1))
         shift = slot.PLACE_IN_SPACE - slot.PLACE
         kinds = np.array([GAUGES[monitor.quantity] + shift * monitor.absolute for monitor in gauged], np.int64)
         components = np.array([self._component(monitor) for monitor in gauged], np.int64)
@@ -293,22 +302,19 @@ class Monitors:
         alone = np.array([len(monitor.points) == 1 for monitor in gauged], bool) & (components >= 0)
         read = (slot.PLACE, slot.SPEED, slot.TURN) if d == 2 else (slot.PLACE, slot.SPEED)
         central = alone & ~places.arms[firsts].any(axis=1) & np.isin(kinds, read)
-        return Gauges(
-            kinds,
-            components,
-            axes,
-            np.cumsum([0] + [len(monitor.points) for monitor in gauged], dtype=np.int64),
-            self.watched[places.rows[points]],
-            places.strained[points],
-            places.starts[points] + places.arms[points],
-            np.concatenate([monitor.weights for monitor in gauged]) if gauged else np.zeros(0),
-            base,
-            np.where(central, kinds, -1),
-            self.watched[places.rows[firsts]],
-            places.starts[firsts, np.maximum(components, 0)],
-            found,
-            np.array([np.inf, 0.0]),
-        )  # fmt: skip
+        return slot.NO_GAUGES._replace(
+            kinds=kinds,
+            components=components,
+            axes=axes,
+            starts=np.cumsum([0] + [len(monitor.points) for monitor in gauged], dtype=np.int64),
+            blocks=self.watched[places.rows[points]],
+            arms=places.strained[points],
+            drawn=places.starts[points] + places.arms[points],
+            weights=np.concatenate([monitor.weights for monitor in gauged]) if gauged else np.zeros(0),
+            plain=np.where(central, kinds, -1),
+            owners=self.watched[places.rows[firsts]],
+            shifts=places.starts[firsts, np.maximum(components, 0)],
+        )
 
     def extremes(self, gauges: Gauges, times: np.ndarray, values: np.ndarray, start: float, dt: float) -> np.ndarray:
         """Highest value and its time, lowest and its time [s] of all monitors over a stretch, (n_monitors, 4).
@@ -316,7 +322,7 @@ class Monitors:
         Of `gauged` at every step, whose number 0 is at `start` [s]; of others those of their samples, at `times`. Where
         there are none: minus and plus infinity.
         """
-        found = np.tile([-np.inf, 0.0, np.inf, 0.0], (len(self.requests), 1))
+        found = np.full((len(self.requests), 4), _NOTHING_YET)
         if len(times):
             known = np.where(np.isfinite(values), values, 0.0)  # a run may end in nonsense
             high, low, each = known.argmax(axis=0), known.argmin(axis=0), np.arange(values.shape[1])

@@ -24,9 +24,9 @@ class Facets(NamedTuple):
     def corners(self) -> list[np.ndarray]:
         """Numbers of the corners of each flat side, each corner once."""
         flat, owners = np.concatenate(self.loops), np.repeat(self.sides, [len(loop) for loop in self.loops])
-        pairs = np.unique(np.column_stack([owners, flat]), axis=0)
-        ends = np.cumsum(np.bincount(pairs[:, 0], minlength=len(self.normals)))[:-1]
-        return np.split(pairs[:, 1], ends)
+        owners, flat = np.divmod(np.unique(owners * len(self.points) + flat), len(self.points))
+        ends = np.cumsum(np.bincount(owners, minlength=len(self.normals)))[:-1]
+        return np.split(flat, ends)
 
     def over(self) -> np.ndarray:
         """Compute the height of each corner in front of the plane of each side [m], (n, k)."""

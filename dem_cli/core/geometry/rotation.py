@@ -19,7 +19,10 @@ from dem_cli.core.arithmetic.products import product
 def turned_by(vectors: np.ndarray, cosines: np.ndarray | float, sines: np.ndarray | float) -> np.ndarray:
     """Turn vectors (..., 2) by angles given by cosines and sines, one for each or one for all."""
     x, y = vectors[..., 0], vectors[..., 1]
-    return np.stack([cosines * x - sines * y, sines * x + cosines * y], axis=-1)
+    first = np.asarray(cosines * x - sines * y)
+    found = np.empty((*first.shape, 2))
+    found[..., 0], found[..., 1] = first, sines * x + cosines * y
+    return found
 
 
 def turned(vectors: np.ndarray, angles: np.ndarray | float) -> np.ndarray:
@@ -38,7 +41,9 @@ def turned_as_one(vectors: np.ndarray, rotation: np.ndarray | float) -> np.ndarr
 
 def across(vectors: np.ndarray) -> np.ndarray:
     """Turn vectors by +90°, (..., 2): velocities of their tips at unit spin."""
-    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
+    found = np.empty((*vectors.shape[:-1], 2))
+    found[..., 0], found[..., 1] = -vectors[..., 1], vectors[..., 0]
+    return found
 
 
 def beside(normals: np.ndarray) -> np.ndarray:

@@ -101,7 +101,7 @@ class Motion:
     def _times(self, t: np.ndarray | float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Times within the shape, time since its end (≥ 0), and whether it has not begun."""
         since = np.asarray(t, float) - self.start
-        inside = np.clip(since, 0.0, self.shape.duration)
+        inside = np.minimum(np.maximum(since, 0.0), self.shape.duration)
         after = np.maximum(since - self.shape.duration, 0.0)
         # start + duration, rounded, may lie a hair behind the end: that is the end, not after it
         after = np.where(after <= 4.0 * np.spacing(self.duration), 0.0, after)

@@ -29,7 +29,7 @@ class PiecewisePolynomial:
         return np.concatenate(parts or [flat]).reshape(times.shape)
 
     def _values(self, times: np.ndarray) -> np.ndarray:
-        piece = np.clip(self.x.searchsorted(times, side="right") - 1, 0, len(self.x) - 2)
+        piece = np.minimum(np.maximum(self.x.searchsorted(times, side="right") - 1, 0), len(self.x) - 2)
         since = times - self.x[piece]
         values, power = self.c[-1][piece], since.copy()
         for coefficients in self.c[-2::-1]:

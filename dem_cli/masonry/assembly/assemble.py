@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -113,7 +112,7 @@ def case_blocks(case: Case) -> tuple[list[Block], dict[str, str]]:
         problems.append(CaseProblem((), "there are no blocks; give a [[structure]] or a [[block]]"))
     if problems:
         raise CaseError(problems)
-    return _sorted([replace(block, rank=k) for k, block in enumerate(blocks)]), aliases(local)
+    return _sorted([block.with_fields(rank=k) for k, block in enumerate(blocks)]), aliases(local)
 
 
 def _check_corners(blocks: Sequence[Block]) -> None:

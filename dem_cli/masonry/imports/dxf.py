@@ -32,7 +32,7 @@ def read(path: Path, chords: int | None = None, only: Collection[str] = (), skip
     only: layers that are read, others are left out; (): all. skip: layers that are left out.
     """
     drawing = _drawing(path)
-    shown = {layer.dxf.name for layer in drawing.layers if not layer.is_off() and not layer.is_frozen()}
+    hidden = {layer.dxf.name for layer in drawing.layers if layer.is_off() or layer.is_frozen()}
     left_out: Counter[str] = Counter()
     bodies, pieces, layers = [], [], {}
     for entity in _entities(drawing):
@@ -40,7 +40,7 @@ def read(path: Path, chords: int | None = None, only: Collection[str] = (), skip
         layers[layer] = True
         if layer in skip or (only and layer not in only):
             left_out[f"on layer '{layer}'"] += 1
-        elif layer not in shown and any(layer == known.dxf.name for known in drawing.layers):
+        elif layer in hidden:
             left_out[f"{kind} on layer '{layer}', which is off"] += 1
         elif kind in OUTLINES and (kind == "LWPOLYLINE" or entity.is_2d_polyline or entity.is_3d_polyline):
             piece = _piece(entity, chords)
@@ -154,9 +154,10 @@ def _loops(pieces: list[_Piece]) -> list[FileBody]:
     from ezdxf import edgeminer
     from ezdxf.math import Vec3
 
-    found = []
-    for layer in dict.fromkeys(piece.layer for piece in pieces):
-        own = [piece for piece in pieces if piece.layer == layer]
+    found, by_layer = [], dict[str, list[_Piece]]()
+    for piece in pieces:
+        by_layer.setdefault(piece.layer, []).append(piece)
+    for layer, own in by_layer.items():
         size = float(np.abs(np.concatenate([piece.ring for piece in own])).max()) or 1.0
         edges = [
             edgeminer.make_edge(Vec3(*piece.ring[0]), Vec3(*piece.ring[-1]), _length(piece.ring), payload=piece)

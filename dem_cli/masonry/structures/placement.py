@@ -8,7 +8,7 @@ What is no prism a generator draws in space: x along the structure, y across it,
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -36,8 +36,7 @@ def place(blocks: Sequence[Block], parameters: StructureBase, path: KeyPath, dim
     """Rotate, then shift the blocks of a generator; completes their ids and materials and records their `path`."""
     parts, others = PLACES[dimension](blocks, parameters)
     return [
-        replace(
-            block,
+        block.with_fields(
             id=full_id(parameters.id, block.id),
             parts=tuple(next(parts) for _ in block.parts),
             material=block.material or parameters.material,
@@ -51,9 +50,9 @@ def place(blocks: Sequence[Block], parameters: StructureBase, path: KeyPath, dim
 def planar_places(blocks: Sequence[Block], parameters: StructureBase) -> tuple[Iterator[Any], dict[str, Any]]:
     """Return the parts of all blocks in their final place in the plane, and the other fields that change."""
     vertices = [part for block in blocks for part in block.parts]
-    ends = np.cumsum([len(part) for part in vertices])[:-1]
+    starts = np.cumsum([0, *(len(part) for part in vertices)]).tolist()
     placed = polygon.moved(np.concatenate(vertices), parameters.rotation, parameters.origin)
-    return iter(np.split(placed, ends)), {}
+    return (placed[start:end] for start, end in pairwise(starts)), {}
 
 
 def spatial_places(blocks: Sequence[Block], parameters: StructureBase) -> tuple[Iterator[Any], dict[str, Any]]:
@@ -99,12 +98,9 @@ def corner_blocks(blocks: Sequence[Block]) -> dict[str, str]:
     free = [block for block in blocks if not block.fixed]
     if not free:
         return {}
-    corners = [  # of blocks in space as seen from -y
-        np.concatenate([corners_of(part)[:, [0, -1]] for part in block.parts]) for block in free
-    ]
-    owner = np.repeat(np.arange(len(free)), [len(own) for own in corners])
-    vertices = np.concatenate(corners)
-    first = np.searchsorted(owner, np.arange(len(free)))
+    corners = [[corners_of(part) for part in block.parts] for block in free]
+    vertices = np.concatenate([part[:, [0, -1]] for own in corners for part in own])  # in space as seen from -y
+    first = np.cumsum([0, *(sum(map(len, own)) for own in corners[:-1])])
     low, high = np.minimum.reduceat(vertices, first), np.maximum.reduceat(vertices, first)
     foot, extent = low.min(axis=0), np.ptp(vertices, axis=0)
     result = {}

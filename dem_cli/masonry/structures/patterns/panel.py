@@ -67,7 +67,7 @@ def blocks_of(tiling: Tiling, thickness: float = 1.0, prefix: str = "") -> list[
     "<course>-<number>" where there are courses, else "<number>"; a prefix goes before.
     """
     parts = [tiling.parts(k) for k in range(len(tiling.stones))]
-    middles = np.array([_middle(each) for each in parts])
+    middles = _middles(parts)
     step = SAME * polygon.size(tiling.corners)
     sideways, up = np.rint(middles / step).T
     courses = np.array(tiling.courses)
@@ -81,9 +81,13 @@ def blocks_of(tiling: Tiling, thickness: float = 1.0, prefix: str = "") -> list[
     return found
 
 
-def _middle(parts: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the common centroid of some parts [m], (2,)."""
-    all_of_it = [polygon.properties(part) for part in parts]
-    areas = np.array([float(each.area) for each in all_of_it])
-    middle: np.ndarray = product(areas, np.array([each.centroid for each in all_of_it])) / areas.sum()
-    return middle
+def _middles(stones: Sequence[Sequence[np.ndarray]]) -> np.ndarray:
+    """Compute the centroids of stones of some parts each [m], (n_stones, 2)."""
+    parts = [part for each in stones for part in each]
+    found = polygon.properties_of_all(np.concatenate(parts), np.cumsum([0, *map(len, parts)]))
+    first = np.cumsum([0, *map(len, stones)])
+    middles = found.area[first[:-1], None] * found.centroid[first[:-1]] / found.area[first[:-1], None]
+    for k in np.flatnonzero(np.diff(first) > 1).tolist():
+        own = slice(first[k], first[k + 1])
+        middles[k] = product(found.area[own], found.centroid[own]) / found.area[own].sum()
+    return middles

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -42,10 +43,22 @@ class Tiling:
 
     def parts(self, k: int) -> tuple[np.ndarray, ...]:
         """Return the convex parts of a stone without corners on straight sides: edges on one line are one face."""
-        outline = polygon.simplified(self.outline(k), ROUND_OFF)
-        if polygon.is_convex(outline):
-            return (outline,)
-        return tuple(polygon.simplified(outline[part], ROUND_OFF) for part in convex_parts(outline))
+        return self._parts[k]
+
+    @cached_property
+    def _parts(self) -> list[tuple[np.ndarray, ...]]:
+        """Convex parts of all stones, which are tested together: one by one takes most of the time of drawing them."""
+        outlines = [polygon.simplified(self.outline(k), ROUND_OFF) for k in range(len(self.stones))]
+        solid = [k for k, outline in enumerate(outlines) if len(outline) >= 3]
+        starts = np.cumsum([0, *(len(outlines[k]) for k in solid)])
+        corners = np.concatenate([np.zeros((0, 2)), *(outlines[k] for k in solid)])
+        convex = polygon.are_convex(corners, starts).tolist() if solid else []
+        whole = {k for k, yes in zip(solid, convex, strict=True) if yes}
+        return [
+            (outline,) if k in whole
+            else tuple(polygon.simplified(outline[part], ROUND_OFF) for part in convex_parts(outline))
+            for k, outline in enumerate(outlines)
+        ]  # fmt: skip
 
     def edges(self) -> dict[tuple[int, int], int]:
         """Return the stone to the left of each edge, from corner to corner."""
