@@ -59,6 +59,11 @@ class StartBound:
         """Upper bound of the load multiplier of rigid blocks in the initial geometry; None: not known."""
         return None if self.loads is None else self.loads.associated.upper
 
+    @property
+    def known(self) -> LimitLoads | None:
+        """Limit analysis of the initial geometry, if it was done already; None: it was not."""
+        return self.loads if "loads" in vars(self) else None
+
     @cached_property
     def loads(self) -> LimitLoads | None:
         """Limit analysis of the initial geometry; None, with the reason in `why_not`, where it is impossible."""
