@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
+from dem_cli.analyses.bound_beside import StartBound, beside, certified, status_beside
 from dem_cli.analyses.ensembles.case_job import CaseJob
 from dem_cli.core.engine.automatic_stiffness import ratio_of
 from dem_cli.core.engine.job import Outcome
@@ -67,18 +67,9 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
         found["joint_state"] = joint_state(sim, END)
     if search.status != INTERRUPTED:
         found |= beside(job, search, sim, start)
-    found["certificates"] = _certified(job, sim, search, start)
+    found |= certified(job, search, sim, start)
     said = answer(search, sim, resolution) | found
     return job.outcome(sims, said | {"status": status_beside(said["status"], found)})
-
-
-def _certified(job: CaseJob, sim: Simulation, search: FailureLoad, start: StartBound) -> dict[str, str]:
-    """Hand over the certificates of the claims; returns in words which have one."""
-    from dem_cli.core.statics.certificates import certificates
-
-    found = certificates(sim, search, start.known)
-    job.clock.certificates(found)
-    return found.words
 
 
 def _mechanism(sim: Simulation, search: FailureLoad, track: Track) -> dict[str, Any]:

@@ -89,7 +89,7 @@ def _standing(sim: Simulation, search: FailureLoad) -> tuple[StandingForces | No
         record.shear_force[acts], friction[acts],
     )  # fmt: skip
     found = StandingForces(_factors(sim), _places(sim), record.blocks[acts], table)
-    return found, f"stands at a load multiplier of {search.low!r}"
+    return found, f"stands at a load multiplier of {float(search.low)!r}"
 
 
 def _factors(sim: Simulation) -> np.ndarray:
@@ -133,14 +133,19 @@ def _mechanism(limits: LimitLoads | None, origin: np.ndarray) -> tuple[BoundMech
     )  # fmt: skip
     bounds = np.array([found.multiplier, found.upper], float)
     certified = BoundMechanism(bounds, found.velocities, joints.blocks[joints.owners[:n]], table)
-    return certified, f"impossible above a load multiplier of {found.upper!r} in the geometry as drawn"
+    return certified, f"impossible above a load multiplier of {float(found.upper)!r} in the geometry as drawn"
 
 
 def _failing(sim: Simulation, search: FailureLoad) -> tuple[FailingMotion | None, str]:
     """Collect places and energies at both ends of the motion that shows a failure; returns them, and what they
     certify."""
     before, failing, verdict = search.failed_from or search.held, search.failed_state, search.failing
-    if before is None or failing is None or verdict is None or search.high is None:
+    if search.high is None:
+        return None, f"{NO_CERTIFICATE}nothing failed"
+    fails = f"fails at a load multiplier of {float(search.high)!r}"
+    if search.impossible:  # its motion may have been begun by a little more load: it is no proof of its own
+        return None, f"{fails}, which the mechanism makes impossible"
+    if before is None or failing is None or verdict is None:
         return None, f"{NO_CERTIFICATE}no motion shows a failure"
     if verdict.block is not None:
         return None, f"{NO_CERTIFICATE}block '{verdict.block}' came to rest elsewhere"
@@ -148,7 +153,7 @@ def _failing(sim: Simulation, search: FailureLoad) -> tuple[FailingMotion | None
         return None, f"{NO_CERTIFICATE}an equilibrium buckles, which its tangent stiffness shows"
     places, energies = zip(*(_instant(sim, state) for state in (before, failing)), strict=True)
     found = FailingMotion(_factors(sim), np.stack(places), np.array(energies))
-    return found, f"fails at a load multiplier of {search.high!r}"
+    return found, fails
 
 
 def _instant(sim: Simulation, state: SavedState) -> tuple[np.ndarray, list[float]]:
