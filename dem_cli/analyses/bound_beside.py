@@ -167,7 +167,7 @@ def certified(job: CaseJob, search: FailureLoad, sim: Simulation, start: StartBo
     """
     found = certificates(sim, search, start.known)
     job.clock.certificates(found)
-    return {"certificates": found.words}
+    return {"certificates": found.in_one_line()}
 
 
 def _where_it_rests(job: CaseJob, search: FailureLoad, sim: Simulation, load: float) -> dict[str, Any]:

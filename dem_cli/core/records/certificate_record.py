@@ -49,6 +49,11 @@ class Certificates(NamedTuple):
     mechanism: BoundMechanism | None = None
     failing: FailingMotion | None = None
 
+    def in_one_line(self) -> str:
+        """Name the claims that have a certificate; where none has one, say why the first has none."""
+        named = [claim for claim, said in self.words.items() if not said.startswith(NO_CERTIFICATE)]
+        return ", ".join(named) or next(iter(self.words.values()))
+
     def stored(self) -> dict[str, np.ndarray]:
         """Arrays by the name of their dataset: `standing_blocks` is `standing.blocks`."""
         parts = {"standing": self.standing, "mechanism": self.mechanism, "failing": self.failing}

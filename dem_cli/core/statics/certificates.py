@@ -144,7 +144,7 @@ def _failing(sim: Simulation, search: FailureLoad) -> tuple[FailingMotion | None
         return None, f"{NO_CERTIFICATE}nothing failed"
     fails = f"fails at a load multiplier of {float(search.high)!r}"
     if search.impossible:  # its motion may have been begun by a little more load: it is no proof of its own
-        return None, f"{fails}, which the mechanism makes impossible"
+        return None, f"{fails} because the mechanism makes it impossible"
     if before is None or failing is None or verdict is None:
         return None, f"{NO_CERTIFICATE}no motion shows a failure"
     if verdict.block is not None:

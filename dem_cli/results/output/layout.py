@@ -374,7 +374,9 @@ ENERGY = {
         optional=True,
     ),
 }
-_FACTORS = Described("what dead and live loads are multiplied by; their ratio is λ", PURE, ("factor",), ("dead", "live"))
+_FACTORS = Described(
+    "what dead and live loads are multiplied by; their ratio is λ", PURE, ("factor",), ("dead", "live")
+)
 _PLACED = ("x", "y", "rotation"), (*_XYZ, *_QUATERNION)
 _ON_PLANE = ("x", "y", "normal x", "normal y", "normal force", "shear force", "friction")
 _IN_SPACE = (
