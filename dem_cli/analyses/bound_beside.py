@@ -15,6 +15,7 @@ from dem_cli.core.engine import measures
 from dem_cli.core.engine.kinematics import gaps_may_close
 from dem_cli.core.engine.properties import joint_properties, law_of
 from dem_cli.core.records.statuses import ABOVE, FALLS
+from dem_cli.core.statics.certificates import certificates
 from dem_cli.core.statics.failure_bracket import OK
 from dem_cli.errors import UsageError
 
@@ -58,6 +59,11 @@ class StartBound:
     def upper(self) -> float | None:
         """Upper bound of the load multiplier of rigid blocks in the initial geometry; None: not known."""
         return None if self.loads is None else self.loads.associated.upper
+
+    @property
+    def known(self) -> LimitLoads | None:
+        """Limit analysis of the initial geometry, if it was done already; None: it was not."""
+        return self.loads if "loads" in vars(self) else None
 
     @cached_property
     def loads(self) -> LimitLoads | None:
@@ -152,6 +158,16 @@ def beside(job: CaseJob, search: FailureLoad, sim: Simulation, start: StartBound
     explained = moved.bound is not None and not is_above(search.low, moved.bound, resolution)
     job.warnings.append(in_words(search.low, bound, moved, explained))
     return found | {"above_the_bound": told | {"explained": explained}}
+
+
+def certified(job: CaseJob, search: FailureLoad, sim: Simulation, start: StartBound) -> dict[str, Any]:
+    """Hand over the certificates of what a search claims; returns the key of the summary that says which have one.
+
+    sim: that of the search; it is left as it was.
+    """
+    found = certificates(sim, search, start.known)
+    job.clock.certificates(found)
+    return {"certificates": found.in_one_line()}
 
 
 def _where_it_rests(job: CaseJob, search: FailureLoad, sim: Simulation, load: float) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from dem_cli.analyses import curve_answers
-from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
+from dem_cli.analyses.bound_beside import StartBound, beside, certified, status_beside
 from dem_cli.analyses.curve_tracing import CurveTracing
 from dem_cli.analyses.ensembles.case_job import CaseJob
 from dem_cli.analyses.pushover import answer
@@ -43,7 +43,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
     """Run a pushover under displacement control; status "not converged" where its peak could not be proved."""
     job = CaseJob.of_case(case, model, observer, settings)
     sim = job.moving_simulation()
-    search, found = FailureLoad(), dict[str, Any]()
+    search, start, found = FailureLoad(), StartBound(job), dict[str, Any]()
     track, resolution = job.track(sim), case.analysis.resolution
     try:
         if (status := standing(sim, track, job.budget)) == OK:
@@ -65,7 +65,8 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
         except KeyboardInterrupt:
             search.status = INTERRUPTED
     if search.status != INTERRUPTED:
-        found |= beside(job, search, sim, StartBound(job))
+        found |= beside(job, search, sim, start)
+    found |= certified(job, search, sim, start)
     said = answer(search, sim, resolution) | found
     return job.outcome([sim], said | {"status": status_beside(said["status"], found)})
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from dem_cli.analyses.bound_beside import StartBound, beside, status_beside
+from dem_cli.analyses.bound_beside import StartBound, beside, certified, status_beside
 from dem_cli.analyses.ensembles.case_job import CaseJob
 from dem_cli.core.engine.automatic_stiffness import ratio_of
 from dem_cli.core.engine.job import Outcome
@@ -67,6 +67,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
         found["joint_state"] = joint_state(sim, END)
     if search.status != INTERRUPTED:
         found |= beside(job, search, sim, start)
+    found |= certified(job, search, sim, start)
     said = answer(search, sim, resolution) | found
     return job.outcome(sims, said | {"status": status_beside(said["status"], found)})
 

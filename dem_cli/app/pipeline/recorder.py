@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from dem_cli.app.pipeline.listener import RunListener
     from dem_cli.core.contact.drawn_joints import DrawnJoints
     from dem_cli.core.model.model import Model
+    from dem_cli.core.records.certificate_record import Certificates
     from dem_cli.core.records.frames import Frame
     from dem_cli.core.records.history_rows import HistoryRow, RunRow, Samples
     from dem_cli.results.output.resume.stages import KeptStages
@@ -71,6 +72,10 @@ class Recorder(Observer):
     def samples(self, samples: Samples) -> None:
         """Write samples of a time history to the files."""
         self._tell("samples", samples)
+
+    def certificates(self, found: Certificates) -> None:
+        """Write certificates to the files; a run that is resumed makes them anew."""
+        self.writer.certificates(found)
 
     def structure(self, model: Model) -> None:
         """Write the structure of the frames to come."""

@@ -17,6 +17,7 @@ from dem_cli.interrupts import at_once
 if TYPE_CHECKING:
     from dem_cli.core.engine.simulation import Simulation
     from dem_cli.core.model.model import Model
+    from dem_cli.core.records.certificate_record import Certificates
 
 AnySimulation = TypeVar("AnySimulation", bound="Simulation")
 
@@ -67,6 +68,12 @@ class Clock(Observer):
     def runs(self, rows: Sequence[RunRow]) -> None:
         """Pass the table of all runs to the observer."""
         self.observer.runs(rows)
+
+    def certificates(self, found: Certificates) -> None:
+        """Pass the certificates of a pushover to the observer, off the clock."""
+        begun = time.perf_counter()
+        self.observer.certificates(found)
+        self.observing += time.perf_counter() - begun
 
     def structure(self, model: Model) -> None:
         """Pass another structure to the observer."""

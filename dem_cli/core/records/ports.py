@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 if TYPE_CHECKING:
     from dem_cli.core.model.model import Model
+    from dem_cli.core.records.certificate_record import Certificates
     from dem_cli.core.records.frames import Frame
     from dem_cli.core.records.history_rows import HistoryRow, RunRow, Samples
 
@@ -91,6 +92,9 @@ class Observer:
 
     def progress(self, stage: str, load: float, displacement: float, fraction: float | None) -> None:
         """Receive the progress of the run; `fraction` of the stage that is done, None where unknown."""
+
+    def certificates(self, found: Certificates) -> None:
+        """Receive the certificates of what a pushover claims, at its end."""
 
     def structure(self, model: Model) -> None:
         """Receive the structure that all frames show, where it differs from the given one; before any of them."""

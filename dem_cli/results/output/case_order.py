@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from dem_cli.core.model.model import Model
+from dem_cli.core.records.certificate_record import Certificates
 from dem_cli.core.records.frames import FRAME_ARRAYS, FrameStack, JointPlaces, LinkPlaces, LinkRecord
 
 
@@ -34,6 +35,21 @@ class CaseOrder:
     def _of_links(self, places: LinkPlaces) -> LinkPlaces:
         held = places.blocks >= 0
         return places._replace(blocks=np.where(held, self.places[places.blocks], places.blocks))
+
+    def certificates(self, found: Certificates) -> Certificates:
+        """Reorder the rows of blocks in certificates, and renumber the blocks of their contact points."""
+        if self.same:
+            return found
+        standing, mechanism, failing = found.standing, found.mechanism, found.failing
+        if standing is not None:
+            blocks = self.places[standing.blocks]
+            standing = standing._replace(places=standing.places[self.order], blocks=blocks)
+        if mechanism is not None:
+            blocks = self.places[mechanism.blocks]
+            mechanism = mechanism._replace(rates=mechanism.rates[self.order], blocks=blocks)
+        if failing is not None:
+            failing = failing._replace(places=failing.places[:, self.order])
+        return found._replace(standing=standing, mechanism=mechanism, failing=failing)
 
     def stack(self, stack: FrameStack) -> FrameStack:
         """Reorder frames: rows of blocks, and the blocks of contact points and links."""

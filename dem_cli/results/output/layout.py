@@ -374,6 +374,59 @@ ENERGY = {
         optional=True,
     ),
 }
+_FACTORS = Described(
+    "what dead and live loads are multiplied by; their ratio is λ", PURE, ("factor",), ("dead", "live")
+)
+_PLACED = ("x", "y", "rotation"), (*_XYZ, *_QUATERNION)
+_ON_PLANE = ("x", "y", "normal x", "normal y", "normal force", "shear force", "friction")
+_IN_SPACE = (
+    *_XYZ, *(f"normal {axis}" for axis in _XYZ), *(f"tangent {axis}" for axis in _XYZ), "normal force",
+    "shear force 1", "shear force 2", "friction",
+)  # fmt: skip
+
+
+def _placed(meaning: str, axes: tuple[str, ...]) -> Described:
+    """Describe places of blocks: centroid, then angle or quaternion."""
+    space = Described(meaning, ("m",) * 3 + (PURE,) * 4, axes, _PLACED[1], optional=True)
+    return Described(meaning, ("m", "m", "rad"), axes, _PLACED[0], space, optional=True)
+
+
+def _certified_points(meaning: str, axis: str) -> Described:
+    """Describe contact points with their forces on the second block, and their friction coefficient."""
+    units, space = ("m",) * 2 + (PURE,) * 2 + ("N",) * 2 + (PURE,), ("m",) * 3 + (PURE,) * 6 + ("N",) * 3 + (PURE,)
+    found = Described(meaning, space, (axis, "component"), _IN_SPACE)
+    return Described(meaning, units, (axis, "component"), _ON_PLANE, found, optional=True)
+
+
+def _certified_blocks(axis: str) -> Described:
+    """Describe the two blocks of contact points."""
+    meaning = "the two blocks, by their numbers"
+    return Described(meaning, PURE, (axis, "side"), ("a", "b"), kind=WHOLE, counts="block", optional=True)
+
+
+_HELD, _BOUND = "standing point", "mechanism point"
+_RATES = "mechanism: rates of all blocks, whose live power is one"
+CERTIFICATES = {
+    "standing_factors": _FACTORS._replace(optional=True),
+    "standing_places": _placed("where the blocks are at the highest load held at rest", ("block", "component")),
+    "standing_blocks": _certified_blocks(_HELD),
+    "standing_contacts": _certified_points("contact points that press at the highest load held at rest", _HELD),
+    "mechanism_bounds": Described(
+        "load multiplier in equilibrium with mechanism_contacts, and that above which the mechanism gains power",
+        PURE, ("bound",), ("equilibrium", "mechanism"), optional=True,
+    ),
+    "mechanism_rates": _generalised(_RATES, "m/(N m)", "rad/(N m)", ("block", "component"))._replace(optional=True),
+    "mechanism_blocks": _certified_blocks(_BOUND),
+    "mechanism_contacts": _certified_points("contact points as drawn, with forces at the bound", _BOUND),
+    "failing_factors": _FACTORS._replace(optional=True),
+    "failing_places": _placed(
+        "where the blocks are before and during the motion that shows a failure", ("instant", "block", "component")
+    ),
+    "failing_energies": Described(
+        "energies since the start at both instants", "J", ("instant", "energy"),
+        ("work of the loads", "friction", "elastic", "kinetic"), optional=True,
+    ),
+}  # fmt: skip
 _SAMPLE = ("sample", "coordinate")
 SERIES = {
     "base_acceleration": _vector("acceleration of the base", "m/s2", _SAMPLE),
@@ -440,6 +493,17 @@ GROUPS = {  # of results.h5
         counted_by="stage",
     ),
     "/dem/history/energy": Group("the energy ledger, a value per row of the history", ENERGY, optional=True),
+    "/dem/certificates": Group(
+        "of static pushovers: arrays with which others check what the run claims",
+        CERTIFICATES,
+        {
+            "stands": "what the forces of standing_contacts certify, or “none: ” and why",
+            "impossible": "what mechanism_rates certify, or “none: ” and why",
+            "fails": "what failing_places certify, or “none: ” and why",
+            "unique": "what is certified about other loads, or “none: ” and why",
+        },
+        optional=True,
+    ),
     "/dem/series": Group(
         "of time histories: motion of the base and monitors at an even rate",
         SERIES,

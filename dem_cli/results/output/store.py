@@ -15,6 +15,7 @@ import numpy as np
 
 from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.model.model import Model
+from dem_cli.core.records.certificate_record import Certificates
 from dem_cli.core.records.frames import FRAME_ARRAYS, STAGES, Frame, FrameStack, LinkRecord, stacked
 from dem_cli.core.records.history_rows import Energy, HistoryRow, RunRow, Samples
 from dem_cli.results.output.case_order import CaseOrder
@@ -23,7 +24,7 @@ from dem_cli.results.output.equilibrium_monitors import EquilibriumMonitors
 from dem_cli.results.output.folder import write_error
 from dem_cli.results.output.growing_dataset import GrowingGroup
 from dem_cli.results.output.hdf5_file import Hdf5File
-from dem_cli.results.output.layout import JOINT_PLACES, JOINT_STATES, LINKS, ROW_SCALARS, declared
+from dem_cli.results.output.layout import CERTIFICATES, JOINT_PLACES, JOINT_STATES, LINKS, ROW_SCALARS, declared
 from dem_cli.results.output.paraview.snapshot_files import BLOCKS, FollowedJoints, ParaViewFiles
 from dem_cli.results.output.run_tables import TABLES, write_runs
 from dem_cli.results.output.series import SeriesWriter
@@ -137,6 +138,19 @@ class ResultWriter:
             declare_model(self.dem.create_group("model"), self.model)
             fill_model(self.dem["model"], self.model)
             self._flush()
+
+        self._guarded(store)
+
+    def certificates(self, found: Certificates) -> None:
+        """Write the certificates of a pushover."""
+        said = declared(CERTIFICATES, self.model.dimension)
+
+        def store() -> None:
+            group = self.dem.create_group("certificates")
+            for name, words in found.words.items():
+                group.attrs[name] = words
+            for name, values in self.order.certificates(found).stored().items():
+                store_described(group, name, values, said[name])
 
         self._guarded(store)
 

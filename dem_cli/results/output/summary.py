@@ -53,6 +53,7 @@ ORDER = (
     "no_bound",
     "bound_where_it_rests",
     "above_the_bound",
+    "certificates",
     "reference",
     "blocks",
     "joints",

@@ -157,6 +157,9 @@ def audit(summary: Mapping[str, Any], results: Results | None) -> list[Soundness
             f"Stone does not sink into stone; good below {DOUBTFUL_OVERLAP:.0%}{', but for blocks that fall' * hit}."
         )
         checks.append(SoundnessCheck("largest overlap", text, tone, words))
+    if summary.get("certificates"):
+        words = "What of the answer others can check from results.h5 without this program: docs/certificates.md."
+        checks.append(SoundnessCheck("certificates", str(summary["certificates"]), "", words))
     return checks + _balance(summary, results)
 
 

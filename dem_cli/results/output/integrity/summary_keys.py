@@ -376,6 +376,7 @@ class RunSummary(SummaryTable):
     largest_displacement: Maybe = None
     moved_far: FoundMotion | None = None
     no_bound: str | None = None
+    certificates: str | None = None
     bound_where_it_rests: FoundMovedBound | None = None
     above_the_bound: FoundAbove | None = None
     unbalanced_force: Maybe = None
