@@ -31,7 +31,7 @@ class Alternative(CaseModel):
 
 
 class Prediction(CaseModel):
-    """[[prediction]]: an answer before its measurement, one for each blind reference; written by `dem verify --predict`."""
+    """[[prediction]]: an answer before its measurement, of each blind reference; `dem verify --predict` writes it."""
 
     quantity: Word = Field(description="path of the number in summary.json", examples=["failure_load"])
     value: float = Field(description="what the case gives as it stands [unit of the quantity]", examples=[0.58])
