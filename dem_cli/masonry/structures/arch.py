@@ -285,7 +285,7 @@ def _on_circle(radius: float, left: float, right: float) -> np.ndarray:
     left, right: where they begin and end along x [m]; beyond the circle the corners are at the level of its centre.
     """
     angles = functions.arccos(np.clip([left / radius, right / radius], -1.0, 1.0))
-    along = np.linspace(*angles, max(2, math.ceil((angles[0] - angles[1]) / FINEST) + 1))
+    along = np.linspace(angles[0], angles[1], max(2, math.ceil((angles[0] - angles[1]) / FINEST) + 1))
     corners = radius * np.stack([np.cos(along), np.sin(along)], axis=1)
     corners[[0, -1], 0] = left, right
     corners[np.abs(corners) < 1e-14 * radius] = 0.0
