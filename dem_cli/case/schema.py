@@ -32,8 +32,7 @@ from dem_cli.case.cross_references import OF_CUTS, REACTIONS
 from dem_cli.case.dimensions import in_space
 from dem_cli.case.imperfection import Imperfection
 from dem_cli.case.load_tables import Fill, GroundTable, Load, Pressure, Restraint
-from dem_cli.case.prediction import Alternative, Prediction
-from dem_cli.case.reference import BLIND, Reference
+from dem_cli.case.reference import BLIND, Alternative, Prediction, Reference
 from dem_cli.case.selection import GroupMembers, Selection
 from dem_cli.case.sweep import Sweep
 from dem_cli.input_limits import MOST_FRAMES, MOST_TABLES
