@@ -246,7 +246,8 @@ class Prediction(CaseModel):
     version: Word = Field(description="version of dem that gave it", examples=["0.21.0"])
     sha256: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")] = Field(
         description="of the case without comments, predictions and measured values; a case whose keys changed is "
-        "refused"
+        "refused",
+        examples=["5fead4d8f1c00bab4f168e0de9e2cf38926ea728c7d4f28e28c15235b1eaaf51"],
     )
 
     @model_validator(mode="after")

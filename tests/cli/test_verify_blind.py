@@ -111,10 +111,11 @@ def test_page_and_junit(file, tmp_path):
     verify("--predict")
     verify("--write", "docs/verification.md", "--junit", "found.xml")
     page = (tmp_path / "docs" / "verification.md").read_text(encoding="utf-8")
-    assert "| [blind](#blind) | 1 | 1 | 0 | 0 | 1 not measured | – | – |" in page
+    assert "| [blind](#blind) | 1 | 1, 1 not measured | 0 | 0 | 0 | – | – |" in page
     (row,) = (line for line in page.splitlines() if "cases/block.toml" in line and line.startswith("|"))
     assert "+5.00\N{NO-BREAK SPACE}% ± 15.0\N{NO-BREAK SPACE}%" in row
     assert row.endswith("| – |  | predicted |")
+    assert "Model errors:\n\n* [cases/block](../cases/block.toml), `failure_load`: blocks like it" in page
     (skipped,) = ET.parse(tmp_path / "found.xml").getroot().iter("skipped")
     assert skipped.get("message").endswith("nothing is measured yet")
 

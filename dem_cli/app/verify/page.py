@@ -80,8 +80,8 @@ def _summary(records: Sequence[Record]) -> list[str]:
         sizes = sorted(abs(size) for size in map(share, answers) if size is not None)
         middle = _percent(sizes[len(sizes) // 2], False) if sizes else "–"
         worst = _percent(sizes[-1], False) if sizes else "–"
-        failed = f"{waiting} not measured" if waiting else found["failed"] + found["met"]
-        cells = (found["cases"], found["references"], found["passed"], found["missed"] + outside, failed)
+        asked = f"{found['references']}, {waiting} not measured" if waiting else found["references"]
+        cells = (found["cases"], asked, found["passed"], found["missed"] + outside, found["failed"] + found["met"])
         rows.append([f"[{shelf}](#{shelf})", *map(str, cells), middle, worst])
     head = ("shelf", "cases", "references", "met", "known misses", "failed", "median error", "largest error")
     remark = f"{len(records)} cases; some stand on more than one shelf. Errors are those of references that are met."
@@ -153,7 +153,8 @@ def _sources(records: Sequence[Record]) -> list[str]:
         for answer in record["references"]
         if answer["state"] == "missed"
     ]
-    lists = {"Known misses:": missed, "\\* Tolerances of their own:": own}
+    blind = any("predicted" in answer for record in records for answer in record["references"])
+    lists = {"Known misses:": missed, "Model errors:" if blind else "\\* Tolerances of their own:": own}
     return [*lines, "", *(line for title, those in lists.items() if those for line in (title, "", *those, ""))]
 
 
