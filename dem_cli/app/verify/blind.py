@@ -34,13 +34,13 @@ def refusal(path: Path, case: Any) -> str | None:
     predicted = {one.quantity for one in case.prediction}
     for one in case.blind:
         if one.path not in predicted:
-            return f"{path}: '{one.path}' is blind and has no prediction; `dem verify --predict {path}` writes it"
+            return f"'{one.path}' is blind and has no prediction; `dem verify --predict {path}` writes it"
     now = hash_of_case(path)
     for prediction in case.prediction:
         if prediction.sha256 != now:
             hashes = f"SHA-256 {prediction.sha256[:12]}… then, {now[:12]}… now"
             allowed = "only 'value' and 'measured_in' may be added: put the others back, or predict another file"
-            return f"{path}: keys changed after the prediction of {prediction.date} ({hashes}); {allowed}"
+            return f"keys changed after the prediction of {prediction.date} ({hashes}); {allowed}"
     return None
 
 

@@ -38,12 +38,12 @@ def _rows(cases: dict[str, dict[str, Any]]) -> str:
                 continue
             low, high = reference["model"]
             model = f"{50.0 * (low + high):+.3g} ± {50.0 * (high - low):.3g} %"
-            bands = [shown(found[key], 4) for key in ("numerical", "inputs")]
+            bands = [shown(found[key], 5) for key in ("numerical", "inputs")]
             name = f"[{stem}](../cases/blind/{stem}.toml)" if number == 0 else ""
             measured = shown(reference["value"]) if "value" in reference else "–"
             what = reference["source"].partition(";")[0]
             lines.append(
-                (name, what, shown(found["value"]), *bands, minus(model), f"**{shown(found['band'], 4)}**", measured)
+                (name, what, shown(found["value"]), *bands, minus(model), f"**{shown(found['band'], 5)}**", measured)
             )
     return table(HEAD, lines)
 
