@@ -47,7 +47,7 @@ def run(case: Case, model: Model, observer: Observer, settings: Settings = DEFAU
             try:
                 path.walk()
             finally:
-                found |= path.found
+                found |= path.found | {"highest_load": path.highest.load, "lowest_load": path.lowest.load}
             found |= beside_path(job, sim, path.highest, path.lowest, RESOLUTION)
             found["status"] = status_beside(found["status"], found)
     except SolverError as error:

@@ -1,8 +1,8 @@
-"""Table [reference]: the expected value of an answer, its source, and the tolerance of the comparison."""
+"""Table [reference]: the expected value of an answer, its source, its tolerance; or what is predicted of it, blind."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
@@ -12,6 +12,7 @@ from dem_cli.case.wording import show
 
 Loads = tuple[float, ...]  # of a curve
 Word = Annotated[str, Field(min_length=1)]
+BLIND = "blind"  # kind of what is predicted before it is measured
 CURVE = "capacity_curve"  # quantity of the summary that is one
 NO_TOLERANCE = "missing; must be a number > 0 (largest difference that passes), as a share of 0 is nothing"
 
@@ -51,13 +52,14 @@ class Reference(CaseModel):
     )
     reason: Word | None = Field(
         default=None,
-        description="why the tolerance is not that of the rule; `dem verify` prints it",
+        description="why the tolerance is not that of the rule, or of kind 'blind' whence the error of the model; "
+        "`dem verify` prints it",
         examples=["the reference leaves out the thickness of the hinge"],
     )
     kind: ReferenceKind = Field(
         default="exact",
         description="where the value comes from: exact (mechanics), experiment, another code's answer, or inference: "
-        "an input of this case was inferred from it, so that it proves nothing",
+        "an input of this case was inferred from it, so that it proves nothing; blind: predicted before it is measured",
     )
     scatter: Positive | None = Field(
         default=None,
@@ -72,10 +74,26 @@ class Reference(CaseModel):
         description="why the value is known to be missed; fails as soon as it is met",
         examples=["the test had wedges under its first course"],
     )
+    model: Pair | None = Field(
+        default=None,
+        description="of kind 'blind': least and largest measured value over the computed one, less 1 [-], as in "
+        "similar cases that are validated; [0, 0] where the question is one of mechanics alone; `reason` says whence",
+        examples=[[-0.05, 0.1]],
+    )
+    measured_in: Word | None = Field(
+        default=None,
+        description="of kind 'blind': where the measured value stands; added with `value`, after the prediction",
+        examples=["Table 4, mean of four specimens"],
+    )
     _resolution: float | None = PrivateAttr(default=None)
 
     @model_validator(mode="after")
     def _one_form(self) -> Reference:
+        if self.kind == BLIND:
+            self._check_blind()
+            return self
+        for key in (key for key in ("model", "measured_in") if getattr(self, key) is not None):
+            raise KeyProblem(f"only allowed of kind '{BLIND}'", key)
         if (self.failure_load is None) == (self.quantity is None):
             neither = self.quantity is None
             found = "neither 'failure_load' nor 'quantity' is" if neither else "'failure_load' and 'quantity' are both"
@@ -87,6 +105,26 @@ class Reference(CaseModel):
         self._check_curve()
         self._check_tolerance()
         return self
+
+    def _check_blind(self) -> None:
+        """Check a prediction's question: it has no value before it is measured, and states the error of the model."""
+        if self.quantity is None:
+            raise KeyProblem("missing; of kind 'blind' it says what is predicted, such as 'failure_load'", "quantity")
+        refused = ("failure_load", "displacements", "tolerance", "relative", "scatter", "missed")
+        for key in (key for key in refused if getattr(self, key) is not None):
+            raise KeyProblem(f"not allowed of kind '{BLIND}'; what passes is the band of its prediction", key)
+        if isinstance(self.value, (bool, str, tuple)):
+            raise KeyProblem(
+                f"{show(self.value)} is not allowed; what is measured of kind 'blind' is a number", "value"
+            )
+        if (self.value is None) != (self.measured_in is None):
+            key = "value" if self.value is None else "measured_in"
+            raise KeyProblem("missing; a measured value has 'value' and 'measured_in'", key)
+        if self.model is None or self.reason is None:
+            key = "model" if self.model is None else "reason"
+            raise KeyProblem("missing; 'model' is the error of the model [lowest, highest], 'reason' says whence", key)
+        if not -1.0 < self.model[0] <= self.model[1]:
+            raise KeyProblem(f"{show(self.model)} is not allowed; must be [lowest, highest], above -1", "model")
 
     def _check_curve(self) -> None:
         loads, places = self.value, self.displacements
@@ -164,3 +202,58 @@ class Reference(CaseModel):
         if self.relative is not None:
             return self.relative * max(map(abs, bounds))
         return allowance(self.kind, self.path, bounds, self.scatter, self._resolution)
+
+
+class Alternative(CaseModel):
+    """[[alternative]]: other values of keys with which a blind case is predicted as well; other commands ignore it."""
+
+    of: Literal["input", "numerical"] = Field(
+        default="input",
+        description="what the difference that it makes belongs to: input: the source gives a range or is silent; "
+        "numerical: contact points, steps, stiffness of the solver's choice",
+    )
+    why: Word = Field(
+        description="what is not known, and where the values come from",
+        examples=["friction is not given; sawn granite has 0.5 to 0.8"],
+    )
+    set: dict[str, Any] = Field(
+        min_length=1,
+        description="keys of the case and their values, as `--set` takes them",
+        examples=[{"joints.dry.friction": 0.5}],
+    )
+
+
+class Prediction(CaseModel):
+    """[[prediction]]: an answer before its measurement, of each blind reference; `dem verify --predict` writes it."""
+
+    quantity: Word = Field(description="path of the number in summary.json", examples=["failure_load"])
+    value: float = Field(description="what the case gives as it stands [unit of the quantity]", examples=[0.58])
+    numerical: Pair = Field(
+        description="least and largest one of its bracket and of the numerical alternatives [unit of the quantity]",
+        examples=[[0.5799, 0.5801]],
+    )
+    inputs: Pair = Field(
+        description="least and largest one of the alternatives of inputs [unit of the quantity]", examples=[[0.5, 0.66]]
+    )
+    band: Pair = Field(
+        description="least and largest measured value that is expected: both differences added to the value, then "
+        "the model's error on top [unit of the quantity]",
+        examples=[[0.47, 0.68]],
+    )
+    date: Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\d$")] = Field(
+        description="day on which it was written (UTC)", examples=["2026-11-29"]
+    )
+    version: Word = Field(description="version of dem that gave it", examples=["0.21.0"])
+    sha256: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")] = Field(
+        description="of the case without comments, predictions and measured values; a case whose keys changed is "
+        "refused",
+        examples=["5fead4d8f1c00bab4f168e0de9e2cf38926ea728c7d4f28e28c15235b1eaaf51"],
+    )
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Prediction:
+        for key in ("numerical", "inputs", "band"):
+            low, high = getattr(self, key)
+            if low > high:
+                raise KeyProblem(f"[{low:g}, {high:g}] is not allowed; must be [lowest, highest]", key)
+        return self

@@ -32,7 +32,7 @@ from dem_cli.case.cross_references import OF_CUTS, REACTIONS
 from dem_cli.case.dimensions import in_space
 from dem_cli.case.imperfection import Imperfection
 from dem_cli.case.load_tables import Fill, GroundTable, Load, Pressure, Restraint
-from dem_cli.case.reference import Reference
+from dem_cli.case.reference import BLIND, Alternative, Prediction, Reference
 from dem_cli.case.selection import GroupMembers, Selection
 from dem_cli.case.sweep import Sweep
 from dem_cli.input_limits import MOST_FRAMES, MOST_TABLES
@@ -330,6 +330,12 @@ class Case(CaseModel):
     reference: Annotated[tuple[Reference, ...], OneOrMoreSchema()] = Field(
         default=(), description="what the answer is compared with: one [reference], or several [[reference]]"
     )
+    alternative: tuple[Alternative, ...] = Field(
+        default=(), description="of a blind case: what else its inputs could be; `dem verify --predict` runs each"
+    )
+    prediction: tuple[Prediction, ...] = Field(
+        default=(), description="of a blind case: written by `dem verify --predict`, and never changed"
+    )
     motion: tuple[Any, ...] = Field(default=(), description="how supports move: one [motion], or several [[motion]]")
     calibration: Any = Field(default=None, description="what was measured, and profiles to try; for `dem calibrate`")
     sweep: Sweep | None = Field(default=None, description="the runs of `dem sweep`; other commands ignore it")
@@ -354,6 +360,18 @@ class Case(CaseModel):
         return self
 
     @model_validator(mode="after")
+    def _predictions_are_of_blind_references(self) -> Case:
+        asked = [one.path for one in self.reference if one.kind == BLIND]
+        for key in ("alternative", "prediction"):
+            if getattr(self, key) and not asked:
+                raise KeyProblem(f"only allowed beside a [reference] of kind '{BLIND}'", key)
+        for i, one in enumerate(self.prediction):
+            if one.quantity not in asked or one.quantity in (other.quantity for other in self.prediction[:i]):
+                message = f"'{one.quantity}' is not allowed; there is one prediction of each blind reference"
+                raise KeyProblem(message, "prediction", i, "quantity")
+        return self
+
+    @model_validator(mode="after")
     def _on_the_ground(self) -> Case:
         """Remove the bases of structures that stand on a [ground], except where a structure has its own."""
         if self.ground is None:
@@ -375,6 +393,16 @@ class Case(CaseModel):
     @model_validator(mode="after")
     def _vectors_of_space(self) -> Case:
         return in_space(self) if self.dimension == 3 else self
+
+    @property
+    def compared(self) -> tuple[Reference, ...]:
+        """References with a value of their own; `dem verify` alone judges blind ones, by their predictions."""
+        return tuple(one for one in self.reference if one.kind != BLIND)
+
+    @property
+    def blind(self) -> tuple[Reference, ...]:
+        """References that are predicted before they are measured."""
+        return tuple(one for one in self.reference if one.kind == BLIND)
 
     @property
     def default_joint(self) -> str:

@@ -5,14 +5,14 @@ exact: what the analysis itself leaves open. A failure load is known to the widt
 width of its bracket; any other number, which springs and samples bound, to a thousandth. code: 5 %, as another
 program has joints, damping and steps of its own. experiment: two standard deviations of repeated tests, `scatter`, or
 the interval between them; where nobody repeated them 5 %, two standard deviations of the one wall that was tilted ten
-times (thesis 7.5.3: 2.5 %). inference: as of a code.
+times (thesis 7.5.3: 2.5 %). inference: as of a code. blind: the band of its prediction, which the case file keeps.
 """
 
 from __future__ import annotations
 
 from typing import Any, Literal, get_args
 
-ReferenceKind = Literal["exact", "experiment", "code", "inference"]
+ReferenceKind = Literal["exact", "experiment", "code", "inference", "blind"]
 KINDS: tuple[str, ...] = get_args(ReferenceKind)
 
 OF_A_LOAD = 1.5  # resolutions of a pushover: the bracket, and half of it for joints that are springs
@@ -30,6 +30,7 @@ RULES = {
     f"{100.0 * OF_ONE_TEST:g} %",
     "code": f"{100.0 * OF_A_CODE:g} %, of a bracket beyond its ends",
     "inference": f"{100.0 * OF_A_CODE:g} %, which says no more than that the arithmetic was done",
+    "blind": "the band of its prediction, written before anything was measured",
 }
 
 

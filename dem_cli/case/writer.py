@@ -21,6 +21,7 @@ LEADING_KEYS = ("kind", "law", "id")  # keys that tell what a table is
 SEVERAL = (
     "materials", "joints", "structure", "block", "interface", "imperfection", "load", "strain", "settlement", "motion",
     "monitor", "reference", "groups", "pressure", "fill",
+    "alternative", "prediction",
 )  # fmt: skip
 
 

@@ -30,6 +30,7 @@ def test_a_cycle_rolls_there_and_back_at_the_loads_of_statics():
     summary, seen = solve(on_polygon(kind="cycle", path=[0.2, -0.2, 0.0], step=0.005))
     assert summary["status"] == "ok"
     assert [turn["load"] for turn in summary["turning_points"]] == [0.2, -0.2, 0.0]
+    assert (summary["highest_load"], summary["lowest_load"]) == pytest.approx((0.2, -0.2), rel=1e-9)
     loads = np.array([row.load for row in seen.rows])
     turned = np.array([row.monitors[0] for row in seen.rows])
     jumps = np.flatnonzero(np.abs(np.diff(turned)) > 0.5 * SLOPE)

@@ -17,10 +17,11 @@ from dem_cli.interrupts import Interrupts
 from dem_cli.version import __version__
 
 if TYPE_CHECKING:
+    from dem_cli.app.verify.predictions import PredictionRun
     from dem_cli.app.verify.records import Record
 
 PAGE = Path("docs/verification.md")
-SHELF = click.Choice(["verification", "validation", "cross-code", "inference"])
+SHELF = click.Choice(["verification", "validation", "cross-code", "inference", "blind"])
 
 
 @click.command("verify", short_help="Run all cases with a [reference] and compare.")
@@ -41,6 +42,7 @@ SHELF = click.Choice(["verification", "validation", "cross-code", "inference"])
 @click.option("--write", type=click.Path(path_type=Path), metavar="PAGE",
               help="Write the page, such as docs/verification.md, and its JSON in data/ beside it.")  # fmt: skip
 @click.option("--junit", "junit_file", type=click.Path(path_type=Path), metavar="FILE", help="Write JUnit XML.")
+@click.option("--predict", is_flag=True, help="Predict blind cases and write the predictions into their files, once.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of tables.")
 @click.option("-q", "--quiet", is_flag=True, help="No progress and no remarks.")
 def command(
@@ -52,6 +54,7 @@ def command(
     jobs: int | None,
     write: Path | None,
     junit_file: Path | None,
+    predict: bool,
     as_json: bool,
     quiet: bool,
 ) -> int:
@@ -63,6 +66,12 @@ def command(
     from dem_cli.app.verify.records import data_file, digest, load, on_shelves
 
     began = time.perf_counter()
+    if predict:
+        given = {"--write": write, "--junit": junit_file, "--changed": changed, "--json": as_json, "--shelf": shelves}
+        for name in (name for name, value in given.items() if value):
+            raise UsageError(f"{name} is not allowed with --predict, which writes into the case files alone")
+        predict_all(find(paths or [Path("cases")], pattern, ["blind"]).cases, jobs, quiet)
+        return 0
     found = find(paths or [Path("cases")], pattern, shelves)
     page = write or PAGE
     before = load(data_file(page))
@@ -145,11 +154,15 @@ def verified(path: Path) -> Record:
     """Solve and compare one case, in any process. Raises KeyboardInterrupt where it is stopped."""
     from dem_cli.app import api
     from dem_cli.app.pipeline.jobs import solve_one
+    from dem_cli.app.verify.blind import refusal
     from dem_cli.app.verify.records import failed, record
     from dem_cli.errors import DemError
 
     try:
         case = api.load_case(path).case
+        refused = refusal(path, case)
+        if refused:
+            return failed(path, refused, bad=True)
         summary = solve_one(path)
     except DemError as error:
         return failed(path, str(error), bad=error.exit_code == UsageError.exit_code)
@@ -159,7 +172,68 @@ def verified(path: Path) -> Record:
         raise KeyboardInterrupt
     if summary["status"] == "failed":
         return failed(path, summary["reason"], bad=summary["exit_code"] == UsageError.exit_code)
-    return record(path, case.title, summary, case.reference, summary.get("solve_seconds") or 0.0)
+    return record(path, case.title, summary, case, summary.get("solve_seconds") or 0.0)
+
+
+def predict_all(paths: Sequence[Path], jobs: int | None, quiet: bool) -> None:
+    """Predict blind cases and append the predictions to their files. Raises DemError before anything is written.
+
+    A case that has a prediction is refused, and so is every other one named beside it.
+    """
+    from dem_cli.app import api
+    from dem_cli.app.verify.predictions import runs_of, text_of_predictions
+
+    cases = {path: api.load_case(path).case for path in paths}
+    blind = {path: case for path, case in cases.items() if case.blind}
+    if not blind:
+        raise UsageError("no case with a [reference] of kind 'blind'")
+    for path, case in blind.items():
+        if case.prediction:
+            said = f"was predicted on {case.prediction[0].date} with dem {case.prediction[0].version}"
+            raise UsageError(f"{path}: {said}; a prediction stays: name cases that have none")
+    runs = [run for path, case in blind.items() for run in runs_of(path, case)]
+    with Interrupts():
+        summaries = predicted_runs(runs, jobs, quiet)
+    texts = {}
+    for path, case in blind.items():
+        own = [summary for run, summary in zip(runs, summaries, strict=True) if run.path == path]
+        texts[path] = text_of_predictions(path, case, own)
+    for path, text in texts.items():
+        put(path, path.read_text(encoding="utf-8").rstrip("\n") + "\n\n" + text)
+        console.show(f"{path}: {many(text.count('[[prediction]]'), 'prediction')} written")
+
+
+def predicted_runs(runs: Sequence[PredictionRun], jobs: int | None, quiet: bool) -> list[dict[str, Any]]:
+    """Solve the runs of predictions, several at a time; their summaries. Raises UsageError, SolverError."""
+    from dem_cli.app.cli.words.run_counter import RunCounter
+    from dem_cli.app.pipeline.batches import usable_cores
+    from dem_cli.app.sweep.pool import WorkerDeath, each_done
+    from dem_cli.core.kernels.compilation.cache_folder import cache_is_cold
+    from dem_cli.errors import SolverError
+
+    found: dict[int, Any] = {}
+    with RunCounter(len(runs), quiet=quiet) as count:
+        for number, summary in each_done(predicted, runs, jobs or usable_cores(), first_alone=cache_is_cold()):
+            name = runs[number].name
+            if isinstance(summary, WorkerDeath):
+                raise SolverError(f"{name}: the process of this run died, perhaps for want of memory")
+            if summary["status"] == "failed":
+                wrong = UsageError if summary["exit_code"] == UsageError.exit_code else SolverError
+                raise wrong(f"{name}: {summary['reason']}")
+            found[number] = summary
+            count.update()
+    return [found[number] for number in range(len(runs))]
+
+
+def predicted(run: PredictionRun) -> dict[str, Any]:
+    """Solve one run of a prediction, in any process. Raises KeyboardInterrupt where it is stopped."""
+    from dem_cli.app.pipeline.jobs import solve_one
+    from dem_cli.case.overrides import override_of
+
+    summary = solve_one(run.path, [override_of(key, value) for key, value in run.changes.items()])
+    if summary["status"] == "interrupted":
+        raise KeyboardInterrupt
+    return summary
 
 
 def write_page(page: Path, records: list[Record]) -> None:
@@ -216,7 +290,9 @@ def in_words(records: Sequence[Record]) -> str:
     from dem_cli.app.verify.records import counts
 
     found = counts(records)
-    states = {"passed": found["passed"], "missed, as known": found["missed"], "FAILED": found["failed"] + found["met"]}
+    states = {"passed": found["passed"], "missed, as known": found["missed"]}
+    states |= {"predicted": found.get("predicted", 0), "outside their bands": found.get("outside", 0)}
+    states |= {"FAILED": found["failed"] + found["met"]}
     listed = ", ".join(f"{number} {name}" for name, number in states.items() if number or name == "passed")
     return f"{many(found['references'], 'reference')}: {listed}"
 

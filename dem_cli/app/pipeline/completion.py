@@ -54,8 +54,8 @@ def completed(found: dict[str, Any], loaded: LoadedCase, model: Model, started: 
     summary |= {"title": case.title or loaded.name, "kind": case.analysis.kind, "version": __version__}
     summary["blocks"] = model.n_blocks
     summary["warnings"] = [*loaded.warnings, *found.get("warnings", ())]
-    if case.reference and found["status"] != "interrupted":
-        summary["reference"] = in_summary(verdicts(summary, case.reference))
+    if case.compared and found["status"] != "interrupted":
+        summary["reference"] = in_summary(verdicts(summary, case.compared))
     summary["wall_seconds"] = time.perf_counter() - started
     return ordered(summary)
 

@@ -16,6 +16,7 @@ SHELVES = {  # [reference] kind -> its shelf
     "experiment": "validation",
     "code": "cross-code",
     "inference": "inference",
+    "blind": "blind",
 }
 APART = "inference"  # a shelf that proves nothing: counted by itself, in no summary
 

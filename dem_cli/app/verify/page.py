@@ -8,7 +8,7 @@ from typing import Any
 
 from dem_cli.app.verify.case_selection import APART, SHELVES
 from dem_cli.app.verify.records import Record, apart, counts, on_shelves
-from dem_cli.app.verify.verdict_words import VERDICTS, allowed, expected, found, off, share
+from dem_cli.app.verify.verdict_words import VERDICTS, allowed, expected, found, off, share, shown
 from dem_cli.case.tolerance_rules import RULES
 
 ABOUT = {
@@ -17,11 +17,17 @@ ABOUT = {
     "validation": "Experiments. They say whether these are the right equations, with the properties that the authors "
     "give.",
     "cross-code": "Answers of other programs to the same question, as their authors printed them.",
+    "blind": "Predicted before they were measured, with numbers, date, version and hash of the case: see "
+    "[blind predictions](blind.md). A band is the numerical one and that of the inputs, added up, with the error of "
+    "the model on top. A measured value is met inside the band; nothing is adjusted afterwards.",
     APART: "Numbers from which an input of their own case was inferred, as sizes of a lost figure or a calibrated "
     "joint. That they come out shows that the arithmetic was done and nothing about dem: they count nowhere else.",
 }
 TITLES = {APART: "Arithmetic of inference"}
 KEPT = "\N{NO-BREAK SPACE}"
+BLIND_HEAD = (
+    "case", "quantity", "predicted", "numerical", "inputs", "model", "band", "on", "measured", "error", "verdict",
+)  # fmt: skip
 TABLE_HEAD = ("case", "quantity", "ours", "reference", "difference", "error", "allowed", "verdict")
 INTRO = """# What dem gets right, and what it misses
 
@@ -51,7 +57,7 @@ def page(records: Iterable[Record], version: str) -> str:
                 "",
                 ABOUT[shelf],
                 "",
-                *_table(of_shelf),
+                *(_predictions(of_shelf) if shelf == "blind" else _table(of_shelf)),
                 "",
                 *_sources(of_shelf),
             ]
@@ -69,11 +75,13 @@ def _summary(records: Sequence[Record]) -> list[str]:
         if not of_shelf or shelf == APART:
             continue
         found = counts(of_shelf)
+        waiting, outside = found.get("predicted", 0), found.get("outside", 0)
         answers = [answer for record in of_shelf for answer in record["references"] if answer["state"] == "passed"]
         sizes = sorted(abs(size) for size in map(share, answers) if size is not None)
         middle = _percent(sizes[len(sizes) // 2], False) if sizes else "–"
         worst = _percent(sizes[-1], False) if sizes else "–"
-        cells = (found["cases"], found["references"], found["passed"], found["missed"], found["failed"] + found["met"])
+        asked = f"{found['references']}, {waiting} not measured" if waiting else found["references"]
+        cells = (found["cases"], asked, found["passed"], found["missed"] + outside, found["failed"] + found["met"])
         rows.append([f"[{shelf}](#{shelf})", *map(str, cells), middle, worst])
     head = ("shelf", "cases", "references", "met", "known misses", "failed", "median error", "largest error")
     remark = f"{len(records)} cases; some stand on more than one shelf. Errors are those of references that are met."
@@ -94,6 +102,23 @@ def _table(records: Sequence[Record]) -> list[str]:
             name = f"{_link(record)}<br>{_cell(record['title'])}" if number == 0 else ""
             rows.append([name, *_answer(answer)])
     return _rows(TABLE_HEAD, rows)
+
+
+def _predictions(records: Sequence[Record]) -> list[str]:
+    """Format the table of blind predictions, whose bands stand apart."""
+    rows = []
+    for record in records:
+        for number, answer in enumerate(record["references"]):
+            name = f"{_link(record)}<br>{_cell(record['title'])}" if number == 0 else ""
+            size, bands = share(answer), (shown(answer[key]) for key in ("numerical", "inputs"))
+            middle, half = sum(answer["model"]) / 2.0, (answer["model"][1] - answer["model"][0]) / 2.0
+            model, band = f"{_percent(middle)} ± {_percent(half, False)}", f"**{shown(answer['band'])}**"
+            rows.append([
+                name, f"`{answer['quantity']}`", shown(answer["predicted"]), *bands, model, band,
+                f"{answer['date']}, dem {answer['version']}", expected(answer), "" if size is None else _percent(size),
+                VERDICTS[answer["state"]],
+            ])  # fmt: skip
+    return _rows(BLIND_HEAD, rows)
 
 
 def _answer(answer: dict[str, Any]) -> list[str]:
@@ -128,7 +153,8 @@ def _sources(records: Sequence[Record]) -> list[str]:
         for answer in record["references"]
         if answer["state"] == "missed"
     ]
-    lists = {"Known misses:": missed, "\\* Tolerances of their own:": own}
+    blind = any("predicted" in answer for record in records for answer in record["references"])
+    lists = {"Known misses:": missed, "Model errors:" if blind else "\\* Tolerances of their own:": own}
     return [*lines, "", *(line for title, those in lists.items() if those for line in (title, "", *those, ""))]
 
 

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from dem_cli.app.verify.blind import blind_answers
 from dem_cli.app.verify.case_selection import APART, SHELVES
 from dem_cli.case.reader import parse_toml, read_text
 from dem_cli.errors import DemError, UsageError
@@ -17,21 +18,23 @@ from dem_cli.results.output.scalars import plain
 
 Record = dict[str, Any]  # of a case: see `record`
 VERDICT_STATES = ("passed", "missed", "failed", "met")  # of a reference; missed: as declared; met: declared as missed
+BLIND_STATES = ("predicted", "outside")  # of blind ones: not measured yet; measured outside the band, no failure
 
 
-def record(path: Path, title: str, summary: Mapping[str, Any], references: Sequence[Any], seconds: float) -> Record:
+def record(path: Path, title: str, summary: Mapping[str, Any], case: Any, seconds: float) -> Record:
     """Create the record of a solved case: file, title, kind, status, seconds, and one dict for each reference.
 
     Those are the verdicts of results/output/reference.py with `source`, `error`, what was found less what was expected,
-    and, where the tolerance is the case's own, the `reason` for it.
+    and, where the tolerance is the case's own, the `reason` for it; then those of blind references (verify/blind.py).
     """
-    status = str(summary["status"])
+    status, references = str(summary["status"]), case.compared
     answers = [
         {**answer, **_told(reference), "error": error_of(answer)}
         for answer, reference in zip(verdicts(summary, references), references, strict=True)
     ]
+    answers = [*(dict(answer, state=state(answer)) for answer in answers), *blind_answers(summary, case)]
     kept = {"case": path.as_posix(), "sha256": digest(path), "title": title, "kind": summary["kind"], "status": status}
-    kept |= {"seconds": rounded(seconds), "references": [dict(answer, state=state(answer)) for answer in answers]}
+    kept |= {"seconds": rounded(seconds), "references": answers}
     if status.startswith("not converged"):
         kept["error"] = "; ".join([status, *summary.get("warnings", ())])
     elif unexpected_fall(summary, answers):
@@ -89,10 +92,11 @@ def apart(records: Iterable[Record]) -> tuple[list[Record], list[Record]]:
 
 
 def counts(records: Iterable[Record]) -> dict[str, int]:
-    """Count cases, references, references in each state, and unsolved cases."""
+    """Count cases, references, references in each state (of blind ones where there are any), and unsolved cases."""
     records = list(records)
     states = [answer["state"] for record in records for answer in record["references"]]
     found = {"cases": len(records), "references": len(states)} | {name: states.count(name) for name in VERDICT_STATES}
+    found |= {name: states.count(name) for name in BLIND_STATES if name in states}
     return found | {"not solved": sum("error" in record for record in records)}
 
 

@@ -8,6 +8,7 @@ from typing import Any
 SHOWN_DIGITS = 5
 ROUND_OFF = 1e-12  # of the expected value: round-off
 VERDICTS = {"passed": "passed", "missed": "missed, as known", "failed": "FAILED", "met": "FAILED: met"}
+VERDICTS |= {"predicted": "predicted", "outside": "missed"}  # of blind references
 
 
 def shown(value: Any, digits: int = SHOWN_DIGITS) -> str:
@@ -26,8 +27,8 @@ def number(value: float, digits: int, sign: str = "") -> str:
 
 
 def found(answer: Mapping[str, Any]) -> str:
-    """Format the value found; of a curve its largest load at the displacements of the reference."""
-    value = answer["found"]
+    """Format the value found, of a blind reference that predicted; of a curve its largest load there."""
+    value = answer.get("predicted", answer["found"])
     return f"up to {shown(max(value))}" if "displacements" in answer and value else shown(value)
 
 
@@ -41,6 +42,8 @@ def expected(answer: Mapping[str, Any]) -> str:
 def off(answer: Mapping[str, Any]) -> str:
     """Format the error in the unit of the quantity; "inside" an interval."""
     value = answer["error"]
+    if "predicted" in answer and value is None:
+        return "–"
     if "displacements" in answer:
         return "–" if value is None else f"{number(value, 2)} on average"
     if value is None:
@@ -54,6 +57,8 @@ def off(answer: Mapping[str, Any]) -> str:
 def share(answer: Mapping[str, Any]) -> float | None:
     """Return the relative error (of an interval: over its nearer end); None where it is undefined."""
     value, expected = answer["error"], answer["value"]
+    if expected is None:  # not measured yet
+        return None
     if "displacements" in answer:
         return None if value is None else value / max(expected)
     if isinstance(expected, list):
@@ -62,7 +67,9 @@ def share(answer: Mapping[str, Any]) -> float | None:
 
 
 def allowed(answer: Mapping[str, Any]) -> str:
-    """Format the tolerance, in the unit of the quantity."""
+    """Format the tolerance, or the band of a prediction, in the unit of the quantity."""
+    if "band" in answer:
+        return shown(answer["band"], 4)
     return f"± {shown(answer['tolerance'], 2)}" if answer["tolerance"] else ""
 
 
@@ -70,9 +77,25 @@ def judgement(answer: Mapping[str, Any]) -> str:
     """Format a verdict as a sentence."""
     if "problem" in answer:
         return str(answer["problem"])
+    if "predicted" in answer:
+        return _of_prediction(answer)
     what = f"{answer['quantity']} is {found(answer)}, expected {expected(answer)} {allowed(answer)}"
     if "missed" not in answer:
         return what.strip()
     if answer["passed"]:
         return f"{what.strip()}: met, but [reference] says that it is missed: {answer['missed']}"
     return f"{what.strip()}: missed, as known: {answer['missed']}"
+
+
+def _of_prediction(answer: Mapping[str, Any]) -> str:
+    """Format the state of a blind reference as a sentence, and what this version finds where that is another value."""
+    what = f"{answer['quantity']} was predicted on {answer['date']} as {shown(answer['predicted'])}, {allowed(answer)}"
+    if answer["value"] is None:
+        text = f"{what}; nothing is measured yet"
+    else:
+        side = "outside" if answer["state"] == "outside" else "inside"
+        text = f"{what}; measured {shown(answer['value'], 6)}, {side}"
+    low, high = answer["numerical"]
+    today, slack = answer["found"], 1e-3 * abs(answer["predicted"])
+    moved = not isinstance(today, (int, float)) or not low - slack <= today <= high + slack
+    return f"{text}; this version finds {shown(today)}" if moved else text

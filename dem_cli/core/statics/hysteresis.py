@@ -5,6 +5,9 @@ linear oscillator of the same amplitudes F, u that loses as much energy E in a c
 
     ζ = E / (2π F u)
 
+A rectangle through its corners has the energy 4 F u, of which the loop fills E / (4 F u) = π ζ / 2. What is left of the
+displacement when the load is taken away is half the distance between its branches where their load is 0.
+
 Between two states of rest the load did at least what friction and springs took, at most all that it gave in the run;
 in between, damping of the run, are motion of the solver and not of the structure, and what snaps. Within these
 bounds its work is that of a multiplier that is straight in the displacement.
@@ -46,6 +49,8 @@ class HysteresisLoop(NamedTuple):
     displacement: float  # amplitude: half of its range [m]
     load: float  # amplitude: half of its range [-]
     damping: float  # equivalent damping ratio [-]
+    filled: float  # energy over that of the rectangle through its corners [-]
+    residual: float | None  # displacement that is left without load [m]; None: the load keeps its sign
 
 
 def pairs_of(path: Sequence[float]) -> list[tuple[int, int]]:
@@ -77,6 +82,20 @@ def energy_between(states: Sequence[PathState], force: float) -> float:
     return min(max(straight, min(least, most)), max(least, most))
 
 
+def residual_of(displacements: np.ndarray, loads: np.ndarray) -> float | None:
+    """Compute the displacement that a loop keeps without load [m]: half the distance between its ends at load 0.
+
+    displacements, loads: those of its states, (n,); straight between them. None where the load keeps its sign.
+    """
+    before, after = loads[:-1], loads[1:]
+    through = np.flatnonzero((before != after) & (before * after <= 0.0))
+    if not len(through):
+        return None
+    part = before[through] / (before[through] - after[through])
+    found = displacements[through] + part * (displacements[through + 1] - displacements[through])
+    return 0.5 * float(np.ptp(found))
+
+
 def loops(
     path: Sequence[float], turns: Sequence[int], states: Sequence[PathState], force: float
 ) -> list[HysteresisLoop]:
@@ -92,6 +111,7 @@ def loops(
         u, load = displacements[rows], loads[rows]
         energy = energy_between(states[rows], force)
         sizes = 0.5 * float(np.ptp(u)), 0.5 * float(np.ptp(load))
-        elastic = 2.0 * np.pi * force * sizes[0] * sizes[1]
-        found.append(HysteresisLoop(first, last, energy, *sizes, energy / elastic if elastic > 0.0 else 0.0))
+        corners = 4.0 * force * sizes[0] * sizes[1]
+        filled, damping = (energy / corners, energy / (0.5 * np.pi * corners)) if corners > 0.0 else (0.0, 0.0)
+        found.append(HysteresisLoop(first, last, energy, *sizes, damping, filled, residual_of(u, load)))
     return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Literal
 
@@ -26,6 +27,7 @@ class Pier(CaseModel):
     material: str = Field("", description="a name in [materials]; default: that of the arch", examples=["brick"])
 
 
+FINEST = math.radians(2.0)  # between corners of a face that follows a circle
 SHAPE_KEYS = {
     "circular": ("radius", "inner_radius", "included_angle_deg"),
     "segmental": ("span", "rise"),
@@ -48,7 +50,19 @@ class Arch(StructureBase):
         description="circular: by radius and angle; segmental: part of a circle, by span and rise; "
         "pointed: two arcs; flat: straight, wedge-shaped voussoirs",
     )
-    voussoirs: int = Field(ge=1, le=10_000, description="number of voussoirs; even for a pointed arch", examples=[21])
+    joints: Literal["radial", "vertical"] = Field(
+        "radial",
+        description="how a circular arch is cut; radial: towards its centre; vertical: a half ring by upright joints, "
+        "on level supports as wide as the ring",
+        examples=["vertical"],
+    )
+    voussoirs: int = Field(
+        ge=1,
+        le=10_000,
+        description="number of voussoirs; even for a pointed arch; of vertical joints those over the clear span, with "
+        "more of about the same width on the supports",
+        examples=[21],
+    )
     ring: Positive = Field(description="depth of the ring, from inner to outer face [m]", examples=[0.15])
     radius: Positive | None = Field(None, description="radius of the middle of the ring [m] (circular)", examples=[1.0])
     inner_radius: Positive | None = Field(
@@ -115,7 +129,19 @@ class Arch(StructureBase):
             _check_piers(self, self.piers)
         if not self.base and self.base_extension:
             raise KeyProblem("not used without base", "base_extension")
+        _check_vertical(self)
         return self
+
+
+def _check_vertical(arch: Arch) -> None:
+    if arch.joints == "radial":
+        return
+    if arch.shape != "circular" or (arch.included_angle_deg or 180.0) != 180.0:
+        raise KeyProblem("'vertical' is only allowed of a half ring: shape = 'circular', 180 degrees", "joints")
+    if arch.piers:
+        raise KeyProblem(
+            "'vertical' is not allowed on columns or buttresses; the half ring stands on supports", "joints"
+        )
 
 
 def _check_piers(arch: Arch, piers: Pier) -> None:
@@ -217,6 +243,8 @@ SHAPE_JOINTS: dict[str, Callable[[Arch], np.ndarray]] = {
 def build(arch: Arch) -> list[Block]:
     """Generate the blocks of an arch in local coordinates: fixed ones, piers from below, voussoirs left to right."""
     joints = SHAPE_JOINTS[arch.shape](arch)
+    if arch.joints == "vertical":
+        return _upright_blocks(arch, *np.abs(joints[0, :, 0]))
     if arch.piers:
         joints[:, :, 1] += arch.piers.height
     blocks = _bases(arch, joints) + (_pier_blocks(arch, arch.piers, joints) if arch.piers else [])
@@ -226,6 +254,42 @@ def build(arch: Arch) -> list[Block]:
             raise ValueError(f"voussoir {k + 1} is not convex; use more voussoirs or a thinner ring")
         blocks.append(Block(f"{k + 1}", (polygon.simplified(shape),), "", arch.thickness))
     return blocks
+
+
+def _upright_blocks(arch: Arch, inner: float, outer: float) -> list[Block]:
+    """Generate the fixed supports and the voussoirs of a half ring with vertical joints, from left to right.
+
+    inner, outer: radii [m]. Joints over the span are at equal distances, those over a support about as far apart. Faces
+    follow the circles by corners; a block whose inner face has some consists of convex parts.
+    """
+    several = max(1, round((outer - inner) * arch.voussoirs / (2.0 * inner)))
+    over_support = np.linspace(inner, outer, several + 1)
+    cuts = np.concatenate([-over_support[::-1], np.linspace(-inner, inner, arch.voussoirs + 1)[1:-1], over_support])
+    blocks = []
+    for side, left in (("left", -outer), ("right", inner)) if arch.base else ():
+        shape = polygon.rectangle(left, -arch.ring, arch.ring, arch.ring)
+        blocks.append(base_block(f"base-{side}", shape, arch.thickness, 0.0))
+    for k, ends in enumerate(zip(cuts, cuts[1:], strict=False)):
+        foot = _on_circle(inner, *ends)
+        parts = tuple(
+            polygon.simplified(np.concatenate([foot[i : i + 2], _on_circle(outer, *foot[i : i + 2, 0])[::-1]]))
+            for i in range(len(foot) - 1)
+        )
+        blocks.append(Block(f"{k + 1}", parts, "", arch.thickness))
+    return blocks
+
+
+def _on_circle(radius: float, left: float, right: float) -> np.ndarray:
+    """Return corners along the upper half of a circle about the origin, at most `FINEST` apart, (n, 2).
+
+    left, right: where they begin and end along x [m]; beyond the circle the corners are at the level of its centre.
+    """
+    angles = functions.arccos(np.clip([left / radius, right / radius], -1.0, 1.0))
+    along = np.linspace(angles[0], angles[1], max(2, math.ceil((angles[0] - angles[1]) / FINEST) + 1))
+    corners = radius * np.stack([np.cos(along), np.sin(along)], axis=1)
+    corners[[0, -1], 0] = left, right
+    corners[np.abs(corners) < 1e-14 * radius] = 0.0
+    return corners
 
 
 def _bases(arch: Arch, joints: np.ndarray) -> list[Block]:

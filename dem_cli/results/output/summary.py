@@ -22,6 +22,8 @@ ORDER = (
     "displacement_at_failure",
     "capacity_curve",
     "check",
+    "highest_load",
+    "lowest_load",
     "turning_points",
     "loops",
     "moved_far",

@@ -1,9 +1,9 @@
 """The documentation as a site: docs/*.md by Sphinx, with every link, picture and anchor checked; works from a disk.
 
 docs/case.md (from the declarations of the keys), docs/commands.md (from the commands), docs/results.md (from the layout
-of the files), docs/gallery.md (from docs/gallery/gallery.toml), docs/seeds.md (from the data of other pages) and the
-table of README.md (from docs/data/verification.json) are generated: `--write` renews them, and without it a stale one
-is an error.
+of the files), docs/gallery.md (from docs/gallery/gallery.toml), docs/seeds.md (from the data of other pages),
+docs/blind.md (from cases/blind) and the table of README.md (from docs/data/verification.json) are generated:
+`--write` renews them, and without it a stale one is an error.
 """
 
 from __future__ import annotations

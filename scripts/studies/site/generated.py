@@ -7,9 +7,10 @@ from pathlib import Path
 
 from studies.places import ROOT
 from studies.seeds import page as seeds_page
-from studies.site import case_keys, commands, gallery_page, limits, readme, results_files
+from studies.site import blind_page, case_keys, commands, gallery_page, limits, readme, results_files
 
 PAGES: dict[str, Callable[[], str]] = {
+    "docs/blind.md": blind_page.text,
     "docs/case.md": case_keys.text,
     "docs/commands.md": commands.text,
     "docs/gallery.md": gallery_page.text,

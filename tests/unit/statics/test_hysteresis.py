@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dem_cli.core.statics.hysteresis import PathState, energy_between, loops, pairs_of
+from dem_cli.core.statics.hysteresis import PathState, energy_between, loops, pairs_of, residual_of
 
 
 @pytest.mark.parametrize(
@@ -36,7 +36,22 @@ def test_a_plastic_loop():
     assert (found.first, found.last) == (1, 3)
     assert found.energy == pytest.approx(force * 4.0 * load * (far - yields))
     assert found.damping == pytest.approx(2.0 / np.pi * (1.0 - yields / far))
+    assert found.filled == pytest.approx(1.0 - yields / far)
+    assert found.residual == pytest.approx(far - yields)
     assert loops(path, [0, 2, 4], states[:5], force) == []
+
+
+@pytest.mark.parametrize(
+    ("u", "loads", "residual"),
+    [
+        ([3.0, 1.0, -3.0, -1.0, 3.0], [2.0, 0.0, -2.0, 0.0, 2.0], 1.0),
+        ([2.0, -2.0, 2.0], [1.0, -1.0, 1.0], 0.0),
+        ([2.0, 1.0, 2.0], [1.0, 0.5, 1.0], None),
+        ([2.0, 1.0, 0.0, 1.0, 2.0], [1.0, -1.0, -1.0, -1.0, 1.0], 0.0),
+    ],
+)
+def test_what_a_loop_keeps_without_load(u, loads, residual):
+    assert residual_of(np.array(u), np.array(loads)) == residual
 
 
 @pytest.mark.parametrize(("damped", "energy"), [(0.0, 9.0), (1.5, 7.5), (7.0, 2.0 * 3.0)])

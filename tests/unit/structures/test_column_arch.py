@@ -213,3 +213,43 @@ def test_placing_turns_then_shifts():
     assert (block.id, block.material, block.path) == ("pier-1", "tuff", ("structure", 3))
     assert block.parts[0] == pytest.approx(np.array([[10.0, 4.0], [10.0, 6.0], [9.0, 6.0], [9.0, 4.0]]))
     assert base.parts[0][:, 0].min() == pytest.approx(10.0)
+
+
+UPRIGHT = {"joints": "vertical", "voussoirs": 40, "radius": 1.0, "ring": 0.12}
+
+
+def test_vertical_joints_cut_a_half_ring():
+    """Joints are upright, their ends on both circles; voussoirs follow one another and fill the ring between chords."""
+    table = arch.Arch.model_validate(UPRIGHT)
+    left, right, *stones = arch.build(table)
+    assert (left.fixed, right.fixed) == (True, True)
+    assert [float(box) for box in (*left.parts[0].min(axis=0), *left.parts[0].max(axis=0))] == pytest.approx(
+        [-1.06, -0.12, -0.94, 0.0]
+    )
+    assert [stone.id for stone in stones] == [str(k + 1) for k in range(40 + 2 * 3)]
+    area = 0.0
+    for stone, after in zip(stones, [*stones[1:], None], strict=True):
+        corners = np.concatenate(stone.parts)
+        area += sum(polygon.properties(part).area for part in stone.parts)
+        assert all(polygon.is_convex(part) for part in stone.parts)
+        if after is not None:
+            assert np.concatenate(after.parts)[:, 0].min() == pytest.approx(corners[:, 0].max(), abs=1e-15)
+        end = corners[np.isclose(corners[:, 0], corners[:, 0].max(), rtol=0.0, atol=1e-15), 1]
+        x = corners[:, 0].max()
+        assert end.max() == pytest.approx(math.sqrt(max(1.06**2 - x**2, 0.0)), abs=1e-7)
+        assert end.min() == pytest.approx(math.sqrt(max(0.94**2 - x**2, 0.0)), abs=1e-7)
+    assert area == pytest.approx(math.pi / 2.0 * (1.06**2 - 0.94**2), rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ({"included_angle_deg": 120.0}, "only allowed of a half ring"),
+        ({"columns": {"width": 0.2, "height": 1.0}}, "not allowed on columns or buttresses"),
+        ({"shape": "segmental", "radius": None, "span": 2.0, "rise": 0.5}, "only allowed of a half ring"),
+    ],
+)
+def test_vertical_joints_are_of_half_rings(more, says):
+    table = {key: value for key, value in (UPRIGHT | more).items() if value is not None}
+    with pytest.raises(ValidationError, match=says):
+        arch.Arch.model_validate(table)

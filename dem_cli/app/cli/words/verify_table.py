@@ -17,6 +17,7 @@ from dem_cli.app.verify.verdict_words import VERDICTS, allowed, expected, found,
 
 UNCUT_WIDTH = 240  # where there is no terminal: lines are not cut
 STYLES = {"passed": "green", "missed": "yellow", "failed": "bold red", "met": "bold red"}
+STYLES |= {"predicted": "cyan", "outside": "yellow"}
 NUMBER_COLUMNS = ("ours", "reference", "error", "%", "allowed", "time")
 
 

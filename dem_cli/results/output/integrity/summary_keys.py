@@ -158,6 +158,8 @@ class FoundLoop(SummaryTable):
 
     energy: Number
     damping: Number
+    filled: Number = 0.0
+    residual: Maybe = None
 
 
 class FoundLimits(SummaryTable):
@@ -314,6 +316,8 @@ class RunSummary(SummaryTable):
     curve_joint_stiffness: Maybe = None
     capacity_curve: FoundCurve | None = None
     check: FoundCheck | None = None
+    highest_load: Maybe = None
+    lowest_load: Maybe = None
     turning_points: list[FoundTurn] | None = None
     loops: list[FoundLoop] | None = None
     settlement_at_collapse: FoundCollapse | None = None
