@@ -25,7 +25,7 @@ from threading import get_ident
 from typing import Any, NamedTuple
 
 from dem_cli.core.kernels.compilation.cache_folder import cache_folder, fingerprint
-from dem_cli.core.kernels.compilation.kinds import WORD, Held, OtherTypes, kind_of, words_of, words_of_kind
+from dem_cli.core.kernels.compilation.kinds import WORD, OtherTypes, kind_of, words_of, words_of_kind
 
 __all__ = ["Header", "KeptKernel", "keep", "kept_kernel", "may_be_kept"]
 
@@ -56,7 +56,7 @@ class _Frame:
         self.words = array("q", bytes(WORD * size))
         self.address = self.words.buffer_info()[0]
         self.last: list[Any] = [None] * n
-        self.held: list[Held] = [{} for _ in range(n)]
+        self.held: list[list[Any]] = [[] for _ in range(n)]
 
 
 class KeptKernel:
@@ -99,8 +99,8 @@ class KeptKernel:
         elif kind_of(value) != kind:
             raise OtherTypes
         else:
-            held: Held = {}
-            words = array("q", words_of(value, held, frame.held[place]))
+            held: list[Any] = []
+            words = array("q", words_of(value, held))
             frame.words[here : here + len(words)] = words
             frame.held[place] = held
         frame.last[place] = value

@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["WORD", "Held", "OtherTypes", "kind_of", "words_of", "words_of_kind"]
+__all__ = ["WORD", "OtherTypes", "kind_of", "words_of", "words_of_kind"]
 
 WORD = 8  # bytes
 _PACKAGE = __name__.partition(".")[0]
 _NUMBERS = {"i": (int, np.int64), "d": (float, np.float64)}
-Held = dict[int, tuple[Any, list[int]]]  # arrays and records by their numbers in Python, with the words of arrays
 _KINDS = {kind: word for word, of in _NUMBERS.items() for kind in of}
 
 
@@ -41,29 +40,22 @@ def kind_of(value: Any) -> str:
     raise OtherTypes
 
 
-def words_of(value: Any, held: Held, before: Held) -> list[int]:
-    """Lay out an argument in machine words as numba does.
-
-    held: what must live as long as that is used, filled here; before: that of the last call, whose arrays are where
-    they were.
-    """
+def words_of(value: Any, held: list[Any]) -> list[int]:
+    """Lay out an argument in machine words as numba does; held: what must live as long as that is used."""
     kind = type(value)
     if kind is np.ndarray:
-        known = before.get(id(value))
-        if known is None:
-            address = value.__array_interface__["data"][0]  # 4 µs
-            known = value, [0, 0, value.size, value.itemsize, address, *value.shape, *value.strides]
-        held[id(value)] = known
-        return known[1]
+        held.append(value)
+        address = value.__array_interface__["data"][0]
+        return [0, 0, value.size, value.itemsize, address, *value.shape, *value.strides]
     if kind in _NUMBERS["d"]:
         return [_as_word(value)]
     if kind in _NUMBERS["i"]:
         return [int(value)]
-    members = [word for each in value for word in words_of(each, held, before)]
+    members = [word for each in value for word in words_of(each, held)]
     if kind is tuple:
         return members
     record = array("q", members)
-    held[id(record)] = record, []
+    held.append(record)
     return [record.buffer_info()[0]]
 
 
