@@ -11,6 +11,9 @@ from casefiles import FILES, case_id, read
 from oracle.check_certificate import NONE, PROVED, REFUSED, check
 
 import dem_cli
+from dem_cli.core.records.certificate_record import NO_CERTIFICATE
+from dem_cli.core.statics.certificates import _failing
+from dem_cli.core.statics.failure_bracket import FailureLoad
 
 CLAIMS = ("stands", "impossible", "fails", "unique")
 WEIGHT = 20_000.0  # of the block of the hand-made file [N]
@@ -151,6 +154,13 @@ def test_a_block_of_friction_that_the_case_does_not_have(tmp_path):
         del file["dem/case"]
         file["dem/case"] = CASE.format(friction=0.35)
     assert verdicts(path)["stands"] == REFUSED
+
+
+def test_a_bracket_that_ends_at_the_bound_certifies_no_failure():
+    """A search that ends undecided takes the bound as its upper side, where nothing was seen to fail."""
+    found, words = _failing(None, FailureLoad(low=0.5, high=0.6, impossible=True))
+    assert found is None
+    assert words.startswith(NO_CERTIFICATE)
 
 
 @pytest.mark.parametrize("path", PUSHED, ids=case_id)

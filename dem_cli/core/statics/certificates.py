@@ -84,10 +84,8 @@ def _standing(sim: Simulation, search: FailureLoad) -> tuple[StandingForces | No
     acts = record.normal_force != 0.0
     points = record.points if sim.kinematics == "large" else (sim.joints.points + sim.origin)[used]
     friction = friction_of(sim.joints, sim.law)[used]
-    table = _table(
-        points[acts], record.normals[acts], record.tangents[acts], record.normal_force[acts],
-        record.shear_force[acts], friction[acts],
-    )  # fmt: skip
+    columns = (points, record.normals, record.tangents, record.normal_force, record.shear_force, friction)
+    table = np.column_stack([values[acts] for values in columns if values.shape[1:] != (0,)])
     found = StandingForces(_factors(sim), _places(sim), record.blocks[acts], table)
     return found, f"stands at a load multiplier of {float(search.low)!r}"
 
@@ -105,47 +103,34 @@ def _places(sim: Simulation) -> np.ndarray:
     return np.column_stack([sim.model.centroids, unturned])
 
 
-def _table(
-    points: np.ndarray,
-    normals: np.ndarray,
-    tangents: np.ndarray,
-    normal: np.ndarray,
-    shear: np.ndarray,
-    friction: np.ndarray,
-) -> np.ndarray:
-    """Put contact points with their forces and friction into one table, (n, 7 or 13); tangents: none in the plane."""
-    return np.column_stack([points, normals, tangents, normal, shear, friction])
-
-
 def _mechanism(limits: LimitLoads | None, origin: np.ndarray) -> tuple[BoundMechanism | None, str]:
     """Collect the mechanism of limit analysis with its forces; returns them, and what they certify.
 
     origin: of the coordinates of its contact points [m], (d,).
     """
-    if limits is None or limits.associated.upper is None or limits.associated.lower is None:
+    upper = None if limits is None else limits.associated.upper
+    if limits is None or upper is None:
         why = "limit analysis was not done" if limits is None else f"limit analysis says: {limits.associated.status}"
         return None, NO_CERTIFICATE + why
     found, structure, d = limits.associated, limits.structure, limits.structure.model.dimension
     joints, n = structure.joints, len(found.normal)
-    table = _table(
-        joints.points[:n] + origin, joints.frames[:n, :d],
-        joints.frames[:n, d : d * (d - 1)], found.normal, found.shear, limits.friction[:n],
-    )  # fmt: skip
-    bounds = np.array([found.multiplier, found.upper], float)
+    axes = joints.frames[:n, : d if d == 2 else 2 * d]  # normal, in space with the first tangent
+    table = np.column_stack([joints.points[:n] + origin, axes, found.normal, found.shear, limits.friction[:n]])
+    bounds = np.array([found.multiplier, upper], float)
     certified = BoundMechanism(bounds, found.velocities, joints.blocks[joints.owners[:n]], table)
-    return certified, f"impossible above a load multiplier of {float(found.upper)!r} in the geometry as drawn"
+    return certified, f"impossible above a load multiplier of {float(upper)!r} in the geometry as drawn"
 
 
 def _failing(sim: Simulation, search: FailureLoad) -> tuple[FailingMotion | None, str]:
     """Collect places and energies at both ends of the motion that shows a failure; returns them, and what they
     certify."""
     before, failing, verdict = search.failed_from or search.held, search.failed_state, search.failing
-    if search.high is None:
-        return None, f"{NO_CERTIFICATE}nothing failed"
+    if search.high is None or verdict is None:
+        return None, f"{NO_CERTIFICATE}no motion shows a failure"
     fails = f"fails at a load multiplier of {float(search.high)!r}"
     if search.impossible:  # its motion may have been begun by a little more load: it is no proof of its own
         return None, f"{fails} because the mechanism makes it impossible"
-    if before is None or failing is None or verdict is None:
+    if before is None or failing is None:
         return None, f"{NO_CERTIFICATE}no motion shows a failure"
     if verdict.block is not None:
         return None, f"{NO_CERTIFICATE}block '{verdict.block}' came to rest elsewhere"
