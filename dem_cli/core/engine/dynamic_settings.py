@@ -51,6 +51,7 @@ class HistorySettings:
         0.01  # of the largest displacement: error of elastic vibrations above which the step is shortened ...
     )
     shortest: float = 0.1  # ... to no less than this share
+    sampled: float = 2e-4  # s between samples that peaks of openings, slips and accelerations on "auto" joints are of
     modes: int = 12  # the slowest, which are looked at for it where there are many
     noticeable: float = 1e-3  # of the smallest edge: energy that lifts the whole structure by it, ways that are none
     carries: float = 1e-3  # of its weight: what pushes a block up with less does not carry it
