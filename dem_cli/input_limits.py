@@ -27,6 +27,7 @@ MOST_FRAMES = 1_000_000
 MOST_RUNS = 1_000_000
 MOST_CYCLES = 1_000_000
 LONGEST = 1e7  # s: times and durations of a shaking
+STRONGEST_MOTION = 1e12  # m/s2: accelerations of the ground, by size
 RECORD_BYTES = 50_000_000
 LONGEST_LINE = 1_000_000  # characters of a line of a record
 MOST_SAMPLES = 2_000_000  # of a record, in steps of the shortest

@@ -39,7 +39,7 @@ def describe_shaking(
     analysis = request.shaking
     step = time_step(sim, analysis.margin, analysis.time_step, sim.damping.stiffening)
     ground = GroundMotion(_motions(case), sim.model)
-    step, drifts = refined(step, sim, ground.motions, duration_of(request, ground), analysis)
+    step, drifts = refined(step, sim, ground.motions, duration_of(request, ground), analysis, request.initial)
     return [
         ("damping", sim.damping.words),
         ("highest frequency", step.cause),

@@ -82,6 +82,55 @@ def test_an_undamped_vibration_is_right_as_well():
     assert summary["time_step"] > 0.09 * 0.25 * summary["largest_time_step"]
 
 
+def started(ratio: float, dimension: int, **initial) -> dict:
+    """The same block, which starts displaced or moving upwards; its ground is at rest."""
+    case = shaken(DAMPINGS.get(ratio, {"none": True}), dimension)
+    case.pop("motion")
+    up = [0.0] * (dimension - 1) + [1.0]
+    spins = [0.0] * (3 if dimension == 3 else 1)
+    given = {"displacement": up, "velocity": [*up, *spins]}
+    case["initial"] = [{"block": "b"} | {key: [size * part for part in given[key]] for key, size in initial.items()}]
+    return case
+
+
+@pytest.mark.parametrize(
+    ("ratio", "dimension", "initial"),
+    [
+        (0.0, 2, {"velocity": 0.02}),
+        (0.01, 2, {"velocity": 0.02}),
+        (0.01, 3, {"velocity": 0.02}),
+        (0.01, 2, {"displacement": 4e-5}),
+    ],
+)
+def test_a_block_that_starts_moving_vibrates_as_it_must(ratio, dimension, initial):
+    """u = exp(−ζωt) [u0 cos ω't + (v0 + ζω u0)/ω' sin ω't]: undamped it was off by 69 %."""
+    summary, records = engine.solve(started(ratio, dimension, **initial))
+    times, moved = records.history.times, records.history.monitors[:, 0]
+    place, speed = initial.get("displacement", 0.0), initial.get("velocity", 0.0)
+    fading, turning = ratio * OMEGA, OMEGA * math.sqrt(1.0 - ratio**2)
+    swings = place * np.cos(turning * times) + (speed + fading * place) / turning * np.sin(turning * times)
+    wanted = np.exp(-fading * times) * swings
+    rest = moved[0] - place  # under its weight
+    assert np.abs(moved - rest - wanted).max() < 0.01 * np.abs(wanted).max()
+    assert not any("drifts" in text for text in summary["warnings"])
+
+
+def test_a_block_that_starts_moving_at_a_given_step_says_its_error():
+    case = started(0.01, 2, velocity=0.02)
+    case["analysis"]["margin"] = 0.3
+    (said,) = [text for text in engine.solve(case)[0]["warnings"] if "drifts" in text]
+    assert said.startswith("elastic vibration at 70 Hz drifts")
+
+
+def test_a_block_that_is_thrown_keeps_its_step():
+    """At 1 m/s it slides on its joint: that is no vibration."""
+    case = started(0.0, 2, velocity=0.02)
+    case["joints"] = {"j": {"kn": 2e8, "friction": 0.6}}
+    case["initial"] = [{"block": "b", "velocity": [1.0, 0.0, 0.0]}]
+    summary, _ = engine.solve(case)
+    assert summary["time_step"] == pytest.approx(0.25 * summary["largest_time_step"])
+
+
 @pytest.mark.parametrize("ratio", [0.05, 0.01])
 @pytest.mark.parametrize("given", ["margin", "time_step"])
 def test_a_step_that_is_given_stays_and_its_error_is_said(ratio, given):

@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dem_cli.core.arithmetic.products import product
+from dem_cli.core.dynamics.balanced_bodies import balances
 from dem_cli.core.dynamics.collapse_criterion import CollapsedBlock, check_energy, check_finite, fallen
-from dem_cli.core.engine.measures import contact_record
 from dem_cli.core.engine.settings import DEFAULT
 from dem_cli.core.records.ports import stage
 from dem_cli.core.records.statuses import COLLAPSED, MOVES, ROCKS, STOOD
@@ -155,34 +154,6 @@ def hardly_moves(sim: DynamicSimulation) -> bool:
     return bool(still and sim.centred_kinetic_energy() < history.quiet * sim.noticeable_energy)
 
 
-def balances(sim: DynamicSimulation) -> bool:
-    """Test whether a block stands on a corner alone, or in space on an edge, and touches nothing else."""
-    record, model, least = contact_record(sim), sim.model, sim.settings.history.edge * sim.smallest
-    pressing = np.flatnonzero(record.normal_force > 0.0)
-    blocks, points = record.blocks[pressing], record.points[pressing]
-    owners = np.concatenate([blocks[:, 0], blocks[:, 1]])
-    places = np.concatenate([points, points])
-    linked = {int(b) for link in sim.links for b in np.unique(link.outline()[1])}
-    for block in np.unique(owners):
-        if model.held[block].any() or int(block) in linked:
-            continue
-        if _on_an_edge(places[owners == block], least):
-            return True
-    return False
-
-
-def _on_an_edge(places: np.ndarray, least: float) -> bool:
-    """Test whether points (n, d) are no farther than `least` [m] from one place, or in space from one line."""
-    arms = places - places[0]
-    lengths = np.sqrt(np.square(arms).sum(axis=1))
-    longest = float(lengths.max())
-    if longest <= least or arms.shape[1] == 2:
-        return longest <= least
-    way = arms[lengths.argmax()] / longest
-    aside = arms - product(arms, way)[:, np.newaxis] * way
-    return bool(np.square(aside).sum(axis=1).max() <= least**2)
-
-
 class Swings:
     """Motions of blocks since the ground motion ended, look by look: places and turned angles times the radius [m]."""
 
@@ -221,11 +192,17 @@ class Swings:
 
     def grew(self) -> bool:
         """Test whether a block went much farther from its first place in the second half of the time than in the
-        first.
+        first, or went on and on in one direction, hardly slower in the second half.
 
-        What leaves a balance goes as cosh, four times as far in twice the time; what settles or trembles does not.
+        What leaves a balance goes as cosh, four times as far in twice the time, and as exp where it moved before;
+        what slides goes twice as far. What settles or trembles does neither.
         """
         history, looks = self.sim.settings.history, np.array(self._looks)
         ways, middle = np.abs(looks - looks[0]), len(looks) // 2
+        creeps = history.creeps * self.sim.smallest
         first, second = ways[: middle + 1].max(axis=0), ways[middle:].max(axis=0)
-        return bool((second > (1.0 + history.doubles) * first + history.creeps * self.sim.smallest).any())
+        if (second > (1.0 + history.doubles) * first + creeps).any():
+            return True
+        one_way = ways[-1] >= history.one_way * np.ptp(looks, axis=0)
+        later = np.abs(looks[-1] - looks[middle])
+        return bool((one_way & (ways[-1] > creeps) & (later >= history.keeps * ways[middle])).any())

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.core.engine.measures import largest_displacement
+from dem_cli.core.engine.monitors import extremes_of
 from dem_cli.core.kernels import records as slot
 
 if TYPE_CHECKING:
@@ -16,6 +17,10 @@ if TYPE_CHECKING:
     from dem_cli.core.engine.dynamic import DynamicSimulation, Looker
     from dem_cli.core.engine.monitors import Monitors
     from dem_cli.core.records.requests import MonitorRequest
+
+
+MOST_SAMPLES = 400_000  # of a block in a stretch: 58 MB in space
+WIDER = 4  # times farther apart than wanted may samples be, where their number is to divide another
 
 
 class MotionStretch(NamedTuple):
@@ -74,6 +79,29 @@ class CutReader:
         self.due += self.every
 
 
+def finest(every: int, wanted: int, least: int) -> int:
+    """Return the steps from one sample to the next, a divisor of `every`: about as many as wanted, no fewer than
+    `least`."""
+    divisors = [steps for steps in range(1, every + 1) if every % steps == 0]
+    wanted = max(wanted, least)
+    larger = next((steps for steps in divisors if steps >= wanted), every)
+    smaller = max(steps for steps in divisors if steps <= wanted)
+    return larger if larger <= WIDER * wanted or smaller < least else smaller
+
+
+def _between(sim: DynamicSimulation, monitors: Monitors, every: int, n_steps: int) -> int:
+    """Return the steps between samples that the extremes of monitors without gauges are found from.
+
+    Every step where joints have a given stiffness. Vibration on others is none of the structure's: as often as its
+    motion needs.
+    """
+    if not len(monitors.stepped):
+        return every
+    rigid = bool(sim.properties.rigid.all()) and not sim.links
+    wanted = round(sim.settings.history.sampled / sim.dt) if rigid else 1
+    return finest(every, min(wanted, every), min(every, -(-n_steps * len(monitors.watched) // MOST_SAMPLES)))
+
+
 def shaken_on(
     sim: DynamicSimulation,
     ground: GroundMotion,
@@ -96,7 +124,8 @@ def shaken_on(
     if monitors.absolute:
         of_steps = np.ascontiguousarray(ground.of_base(start + dt * np.arange(since + n_steps))[:, [2, 1]])
     gauges = monitors.gauges(of_steps)
-    watch = sim.watch(monitors.watched, every, n_samples, gauges)
+    finer = _between(sim, monitors, every, since + n_steps)
+    watch = sim.watch(monitors.watched, finer, -(-(since + n_steps) // finer), gauges)
     new = 1 if since else 0  # the first sample of a stretch that begins between two is none
     first, n = done - since + every * new, max(n_samples - new, 0)
     if with_base:
@@ -107,10 +136,17 @@ def shaken_on(
     sim.shake(ground.stretch(start, since + n_steps, dt), n_steps, watch, since, looker, reader)
     values = np.zeros((0, len(monitors.requests)))
     if n_samples > new:
-        values = monitors.series(watch.samples[new:], base, watch.links[new:])
+        wanted = slice(new * (every // finer), None, every // finer)
+        values = monitors.series(watch.samples[wanted], base, watch.links[wanted])
         if reader is not None:
             values[:, monitors.columns_of_cuts] = reader.rows
     overlap = max(0.0, -float(gauges.tally[slot.LEAST_GAP]))
     extremes = monitors.extremes(gauges, times, values, start, dt)
+    if finer < every:
+        begins = -(-since // finer)
+        between = start + dt * finer * np.arange(begins, len(watch.samples))
+        bases = ground.of_base(between) if with_base else np.zeros((len(between), 3, sim.model.dimension))
+        read = monitors.series(watch.samples[begins:], bases, watch.links[begins:], gauged=False)
+        extremes[monitors.stepped] = extremes_of(between, read)[monitors.stepped]
     moved = largest_displacement(sim) >= sim.settings.history.noticeable * sim.smallest
     return MotionStretch(times, base, values, extremes, overlap, int(gauges.tally[slot.MET]) if moved else 0)

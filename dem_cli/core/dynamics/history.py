@@ -87,7 +87,7 @@ class TimeHistory:
         if not found.held and analysis.time_step is None:
             history = self.job.settings.history
             found = found._replace(step=min(found.step, history.loose_step, history.loose_share * self.duration))
-        found, drifts = refined(found, sim, self.ground.motions, self.duration, analysis)
+        found, drifts = refined(found, sim, self.ground.motions, self.duration, analysis, self.request.initial)
         self.job.warnings += [drifts] if drifts else []
         if any(law.rates for law in laws_of(self.request)):
             sim = self.job.clock.compiled(lambda: make(found.step))

@@ -25,16 +25,16 @@ def set_initial(initial: Sequence[InitialRequest], sim: Simulation) -> None:
     """Move the blocks of all requests, one after the other."""
     rest = measures.largest_overlap(sim)
     for one in initial:
-        chosen = _chosen(sim.model, one)
+        chosen = chosen_blocks(sim.model, one)
         if any(one.turn):
-            moves.turn(sim, chosen, np.array(one.turn), _pivot(sim, chosen, np.array(one.turn)))
+            moves.turn(sim, chosen, np.array(one.turn), pivot_of(sim, chosen, np.array(one.turn)))
         moves.displace(sim, chosen, np.array(one.displacement))
         moves.throw(sim, chosen, np.array(one.velocity))
         moves.find_faces(sim)
     _check_apart(initial, sim, rest)
 
 
-def _chosen(model: Model, one: InitialRequest) -> np.ndarray:
+def chosen_blocks(model: Model, one: InitialRequest) -> np.ndarray:
     """Numbers of the blocks that a request moves, each once."""
     found = np.concatenate([model.chosen(name, False) for name in one.names])
     return found[np.sort(np.unique(found, return_index=True)[1])]
@@ -46,7 +46,7 @@ def tilt(sim: Simulation, chosen: np.ndarray, turn: np.ndarray | float) -> None:
     turn: counter-clockwise, in space axis times angle (3,) [rad].
     """
     turn = np.atleast_1d(turn)
-    moves.turn(sim, chosen, turn, _pivot(sim, chosen, turn))
+    moves.turn(sim, chosen, turn, pivot_of(sim, chosen, turn))
     moves.find_faces(sim)
 
 
@@ -56,7 +56,7 @@ def _check_apart(initial: Sequence[InitialRequest], sim: Simulation, rest: float
     faces = sim.tracking.faces_within(sim.bodies, 0.0)
     for number in np.flatnonzero(faces.separation < -2.0 * rest - sim.settings.history.inside * sim.smallest):
         pair = model.part_blocks[faces.parts[number]].tolist()
-        tables = [i for i, t in enumerate(initial) if set(_chosen(model, t).tolist()) & set(pair)]
+        tables = [i for i, t in enumerate(initial) if set(chosen_blocks(model, t).tolist()) & set(pair)]
         if not tables:
             continue
         a, b = (model.block_ids[i] for i in pair)
@@ -67,7 +67,7 @@ def _check_apart(initial: Sequence[InitialRequest], sim: Simulation, rest: float
         raise CaseError([CaseProblem(("initial", tables[-1]), message)])
 
 
-def _pivot(sim: Simulation, chosen: np.ndarray, turn: np.ndarray) -> np.ndarray:
+def pivot_of(sim: Simulation, chosen: np.ndarray, turn: np.ndarray) -> np.ndarray:
     """Find the point about which chosen blocks tilt (d,). It touches other blocks, outermost on the side to which
     they tilt: to the left in the plane the leftmost one.
     """

@@ -12,6 +12,8 @@ undamped one by δωT in a time T.
 What a motion makes of each mode is found mode by mode. To an acceleration that is linear between samples an oscillator
 answers with what follows it slowly, −a/ω² + 2ζa'/ω³, and with a free vibration that begins anew with every kink and
 jump; the derivative of that by λ, times λ' − λ, is the error. Modes count by their displacement in the motion.
+Blocks that start displaced or moving vibrate freely, with √(q² + (q'/ω)²) in a mode; where joints would open or slip
+by it, what follows is no vibration, and nothing is expected of it.
 """
 
 from __future__ import annotations
@@ -23,13 +25,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dem_cli.core.arithmetic import functions
-from dem_cli.core.dynamics.frequencies import modes, system
+from dem_cli.core.dynamics.frequencies import System, modes, system
+from dem_cli.core.dynamics.initial_state import chosen_blocks, pivot_of
+from dem_cli.core.geometry.rotation import swept
 
 if TYPE_CHECKING:
     from dem_cli.core.dynamics.time_step import TimeStep
     from dem_cli.core.engine.dynamic import DynamicSimulation
     from dem_cli.core.motion.motion import Motion
-    from dem_cli.core.records.requests import ShakingRequest
+    from dem_cli.core.records.requests import InitialRequest, ShakingRequest
 
 AIM = 0.8  # of the allowed error, that a step is chosen for
 MOST_SAMPLES = 20_000  # of a motion
@@ -54,7 +58,12 @@ class Swing(NamedTuple):
 
 
 def refined(
-    found: TimeStep, sim: DynamicSimulation, motions: Sequence[Motion], duration: float, analysis: ShakingRequest
+    found: TimeStep,
+    sim: DynamicSimulation,
+    motions: Sequence[Motion],
+    duration: float,
+    analysis: ShakingRequest,
+    initial: Sequence[InitialRequest] = (),
 ) -> tuple[TimeStep, str]:
     """Refine the time step until elastic vibrations are right; returns it and a warning of what is still wrong, or
     "".
@@ -63,15 +72,15 @@ def refined(
     whose vibration is not the structure's.
     """
     settings = sim.settings.history
-    if not (found.held and motions) or bool(sim.properties.rigid.all()):
+    if not (found.held and (motions or initial)) or bool(sim.properties.rigid.all()):
         return found, ""
-    error = vibration_error(sim, motions, found.step, duration)
+    error = vibration_error(sim, motions, found.step, duration, initial)
     if error.share <= settings.drift:
         return found, ""
     wanted = functions.agreed(math.sqrt(AIM * settings.drift / error.share))
     if analysis.free_step:
         found = found._replace(step=max(wanted, settings.shortest) * found.step)
-        error = error if wanted >= settings.shortest else vibration_error(sim, motions, found.step, duration)
+        error = error if wanted >= settings.shortest else vibration_error(sim, motions, found.step, duration, initial)
         if wanted >= settings.shortest or error.share <= settings.drift:
             return found, ""
     needed = wanted if not analysis.free_step else wanted / settings.shortest
@@ -83,8 +92,15 @@ def refined(
     )
 
 
-def vibration_error(sim: DynamicSimulation, motions: Sequence[Motion], step: float, duration: float) -> VibrationError:
-    """Compute the error of elastic vibrations at the time step, under each motion alone for `duration` [s].
+def vibration_error(
+    sim: DynamicSimulation,
+    motions: Sequence[Motion],
+    step: float,
+    duration: float,
+    initial: Sequence[InitialRequest] = (),
+) -> VibrationError:
+    """Compute the error of elastic vibrations at the time step, under each motion alone for `duration` [s], and from
+    how blocks start.
 
     Joints that touch now act.
     """
@@ -105,6 +121,12 @@ def vibration_error(sim: DynamicSimulation, motions: Sequence[Motion], step: flo
             worst  # whatever the motion is: its drift is no more than the largest vibration × min(duration, 1/fading)
         )
     sizes = np.sqrt((shapes[:, :, :d] ** 2).sum(axis=2)).max(axis=1)
+    free = free_vibration(sim, springs, omegas, shapes, initial) if initial else np.zeros(len(omegas))
+    if free.any():
+        lasts = np.minimum(duration, np.divide(1.0, fading, out=np.full(len(fading), np.inf), where=fading > 0.0))
+        drifts = sizes * free * np.minimum(shift * lasts * functions.exp(-fading * lasts), 2.0)
+        k = int(drifts.argmax())
+        worst = VibrationError(float(drifts[k] / (sizes * free).max()), float(omegas[k]) / (2.0 * math.pi))
     for times, group in _sampled_alike(motions):
         along = np.array([motion.direction for motion in group])
         ways = sizes * np.abs(np.einsum("knj,n,mj->mk", shapes[:, :, :d], model.masses * ~model.fixed, along))
@@ -117,6 +139,39 @@ def vibration_error(sim: DynamicSimulation, motions: Sequence[Motion], step: flo
             k = int(shares.max(axis=0).argmax())
             worst = VibrationError(float(shares.max()), float(omegas[k]) / (2.0 * math.pi))
     return worst
+
+
+def free_vibration(
+    sim: DynamicSimulation,
+    springs: System,
+    omegas: np.ndarray,
+    shapes: np.ndarray,
+    initial: Sequence[InitialRequest],
+) -> np.ndarray:
+    """Compute the amplitudes of modes with which blocks start displaced or moving, (n_modes,), shapes of mass one.
+
+    Zero where joints would not take it: where they may slip, and a block would be accelerated by more than its dead
+    loads accelerate it.
+    """
+    d, states = sim.model.dimension, np.zeros((2, sim.model.n_blocks, springs.masses.shape[1]))
+    for one in initial:
+        blocks = chosen_blocks(sim.model, one)
+        if any(one.turn):
+            turn = np.array(one.turn)
+            states[0][blocks, :d] += swept(turn, sim.bodies.positions[blocks] - pivot_of(sim, blocks, turn))
+            states[0][blocks, d : d + len(turn)] += turn
+        states[0][blocks, :d] += one.displacement
+        states[1][blocks, : len(one.velocity)] = one.velocity
+    scaled = [springs.reduced(each[springs.blocks]) * springs.masses for each in (*states, *shapes)]
+    places, speeds = (np.array([float((shape * state).sum()) for shape in scaled[2:]]) for state in scaled[:2])
+    found = np.sqrt(places**2 + (speeds / omegas) ** 2)
+    joints, none = sim.joints, np.zeros(len(sim.contacts.normal))
+    limits = sim.law.shear_limit(joints.law[joints.owners], none, sim.contacts.memory, joints.kn)
+    if np.isinf(limits).all():
+        return found
+    loads = np.sqrt((sim.drawn_dead[:, :d] ** 2).sum(axis=1)) / np.where(sim.model.fixed, np.inf, sim.model.masses)
+    each = np.sqrt((shapes[:, :, :d] ** 2).sum(axis=2)) * (found * omegas**2)[:, None]
+    return found if (each.sum(axis=0) <= loads).all() else np.zeros(len(omegas))
 
 
 def _sampled_alike(motions: Sequence[Motion]) -> Iterator[tuple[np.ndarray, list[Motion]]]:

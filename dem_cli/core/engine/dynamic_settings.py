@@ -51,6 +51,7 @@ class HistorySettings:
         0.01  # of the largest displacement: error of elastic vibrations above which the step is shortened ...
     )
     shortest: float = 0.1  # ... to no less than this share
+    sampled: float = 2e-4  # s between samples that peaks of openings, slips and accelerations on "auto" joints are of
     modes: int = 12  # the slowest, which are looked at for it where there are many
     noticeable: float = 1e-3  # of the smallest edge: energy that lifts the whole structure by it, ways that are none
     carries: float = 1e-3  # of its weight: what pushes a block up with less does not carry it
@@ -65,6 +66,8 @@ class HistorySettings:
     limit: float = 20.0  # so many √(half its height / g); a block near its balance falls or turns back within ten
     one_more: float = 1.0  # s that what hardly moves must go on hardly moving to be at rest
     doubles: float = 2.0  # of the way of the first half of a time, that the second half adds where a motion grows ...
+    keeps: float = 0.8  # ... or this share of it, where a block goes on in one direction ...
+    one_way: float = 0.95  # ... and this share of all its ways leads there ...
     creeps: float = 1e-6  # ... and so much of the smallest edge: below it nothing has moved
     edge: float = 1e-6  # of the smallest edge: points no farther from one place, or one line in space, are an edge
 

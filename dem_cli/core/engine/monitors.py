@@ -171,6 +171,16 @@ class CutMonitor(NamedTuple):
         return float(getattr(found, self.quantity))
 
 
+def extremes_of(times: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Find the highest of some values and its time, the lowest and its time [s], (n_monitors, 4); infinite where there
+    are none. values: (n, n_monitors) at times (n,)."""
+    if not len(times):
+        return np.tile([-np.inf, 0.0, np.inf, 0.0], (values.shape[1], 1))
+    known = np.where(np.isfinite(values), values, 0.0)  # a run may end in nonsense
+    high, low, each = known.argmax(axis=0), known.argmin(axis=0), np.arange(values.shape[1])
+    return np.column_stack([known[high, each], times[high], known[low, each], times[low]])
+
+
 class Monitors:
     """Monitors of a run, in the order of their requests.
 
@@ -251,17 +261,21 @@ class Monitors:
         found[~arms.any(axis=1)] = 0.0  # centroids are those of the mass, which no mode moves
         self._points = self._points._replace(strained=arms + found)
 
-    def series(self, samples: np.ndarray, base: np.ndarray, links: np.ndarray = NO_LINKS) -> np.ndarray:
+    def series(
+        self, samples: np.ndarray, base: np.ndarray, links: np.ndarray = NO_LINKS, gauged: bool = True
+    ) -> np.ndarray:
         """Compute the values of all monitors over time, (n, n_monitors).
 
         samples: of the watched blocks, (n, n_watched, 3, n_dof); base: acceleration, velocity and displacement
-        of the base at the same instants [m, s], (n, 3, d); links: state of all links, (n, n_links, 3).
+        of the base at the same instants [m, s], (n, 3, d); links: state of all links, (n, n_links, 3). gauged: whether
+        those are wanted whose extremes gauges have; else they stay 0.
         """
         out = np.zeros((len(samples), len(self.requests)))
         if self.requests:
             motion = PointMotion(self._points, samples)
             for monitor in self._at_points:
-                monitor.fill(out, motion, base)
+                if gauged or monitor.quantity not in GAUGES:
+                    monitor.fill(out, motion, base)
             if self._at_joints is not None:
                 self._at_joints.fill(out, motion)
             for column, (rows, what, weights) in self._of_links:
@@ -272,6 +286,14 @@ class Monitors:
     def gauged(self) -> tuple[PointMonitor, ...]:
         """Monitors whose extremes are taken at every step of a time history: displacements, velocities, rotations."""
         return tuple(monitor for monitor in self._at_points if monitor.quantity in GAUGES)
+
+    @cached_property
+    def stepped(self) -> np.ndarray:
+        """Numbers of the monitors that need samples of every step for their extremes: accelerations, openings, slips,
+        and forces and lengths of links, ascending."""
+        columns = {monitor.column for monitor in self._at_points if monitor.quantity not in GAUGES}
+        columns |= set(self._at_joints.columns.tolist()) if self._at_joints is not None else set()
+        return np.array(sorted(columns | {column for column, _ in self._of_links}), np.int64)
 
     @property
     def absolute(self) -> bool:
@@ -322,11 +344,7 @@ class Monitors:
         Of `gauged` at every step, whose number 0 is at `start` [s]; of others those of their samples, at `times`. Where
         there are none: minus and plus infinity.
         """
-        found = np.full((len(self.requests), 4), _NOTHING_YET)
-        if len(times):
-            known = np.where(np.isfinite(values), values, 0.0)  # a run may end in nonsense
-            high, low, each = known.argmax(axis=0), known.argmin(axis=0), np.arange(values.shape[1])
-            found[:] = np.column_stack([known[high, each], times[high], known[low, each], times[low]])
+        found = extremes_of(times, values)
         for monitor, row in zip(self.gauged, gauges.found):
             high, at, low, low_at = row
             if self._component(monitor) == -1:

@@ -23,12 +23,13 @@ from dem_cli.core.motion.record_file import read_series
 from dem_cli.core.motion.record_text import RecordError
 from dem_cli.core.motion.units import SI_FACTORS, STANDARD_GRAVITY
 from dem_cli.errors import CaseError, CaseProblem
-from dem_cli.input_limits import LONGEST
+from dem_cli.input_limits import LONGEST, STRONGEST_MOTION
 
 if TYPE_CHECKING:
     from dem_cli.case.schema import Case
 
 STRONGEST, WEAKEST = 10.0, 1e-4  # g: beyond these a record most likely has another unit
+FAINTEST = 1e-30  # m/s2: the factor that scales a fainter record to its `peak` overflows
 NOTHING = 1e-9  # of the peak of a record: what a baseline leaves of it is round-off
 LIKELY = (0.005, 3.0)  # g: peaks of a unit that is proposed instead
 
@@ -85,6 +86,10 @@ def _suite(table: MotionTable, i_table: int, seed: int) -> list[Motion]:
         titles, factor = [f"artificial {k}" for k in range(1, table.count + 1)], table.scale
     along = _unit(table.direction)
     motions = [Motion(shape, along, table.blocks, table.start, factor, title) for shape, title in zip(shapes, titles)]
+    strongest = max(motion.peak for motion in motions)
+    if not strongest <= STRONGEST_MOTION:
+        message = f"a peak acceleration of {strongest:.3g} m/s2 is not allowed; at most {STRONGEST_MOTION:g} m/s2"
+        raise CaseError([CaseProblem(("motion", i_table), message)])
     return [_with_warnings(motions[0], table)] if isinstance(table, RecordTable) else motions
 
 
@@ -149,6 +154,9 @@ def _record(table: RecordTable, i_table: int) -> Accelerogram:
     if made.peak == 0.0:
         message = f"{Path(table.file).name}: no motion, every {table.quantity} is the same"
         raise CaseError([CaseProblem(("motion", i_table, "file"), message)])
+    if made.peak < FAINTEST:
+        message = f"{Path(table.file).name}: a peak acceleration of {made.peak:.3g} m/s2 is not allowed; at least "
+        raise CaseError([CaseProblem(("motion", i_table, "file"), f"{message}{FAINTEST:g} m/s2")])
     _check_peak(table, unit, made.peak / STANDARD_GRAVITY, i_table)
     return made
 

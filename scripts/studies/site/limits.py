@@ -29,6 +29,7 @@ from dem_cli.input_limits import (
     PIPE_SECONDS,
     RECORD_BYTES,
     SMALL_RESULTS,
+    STRONGEST_MOTION,
     SUMMARY_BYTES,
     TABLE_BYTES,
 )
@@ -62,6 +63,7 @@ LIMITS = {
         InputLimit("runs of a sweep", MOST_RUNS, "", "more are a slip, or a case for several sweeps"),
         InputLimit("cycles of a harmonic motion", MOST_CYCLES, "", "each takes thousands of steps"),
         InputLimit("times and durations of a shaking", LONGEST, "s", "four months, in steps of less than 1 ms"),
+        InputLimit("accelerations of the ground", STRONGEST_MOTION, "m/s2", "no ground moves like that"),
     ),
     "files that a case names": (
         InputLimit("a record", RECORD_BYTES, "bytes", "all of it is held in memory"),

@@ -5,10 +5,15 @@ from __future__ import annotations
 import math
 
 import engine
+import numpy as np
 import pytest
 from engine import block, rectangle, tables
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+
+from dem_cli.core.dynamics.balanced_bodies import bodies_of
+from dem_cli.core.dynamics.coda import Swings
+from dem_cli.core.engine.settings import DEFAULT
 
 G, HALF, HEIGHT = 9.81, 1.0, 10.0
 BALANCE = math.atan(2.0 * HALF / HEIGHT)
@@ -77,11 +82,37 @@ def test_hardly_out_of_balance(share, falls):
     assert engine.solve(let_go(share))[0]["collapsed"] is falls
 
 
-def test_in_balance_nobody_knows():
+@pytest.mark.parametrize("space", [False, True])
+def test_two_blocks_hardly_out_of_balance(space):
+    """By 0.02 mrad, flush on each other: they "stood", at rest. Exact is the fall of one block."""
+    found = engine.solve(let_go(1.0001, space, stacked=True))[0]
+    assert found["collapsed"] is True
+    assert abs(found["collapse_time"] - time_until(1.0001, 1.0)) < 0.5
+
+
+@pytest.mark.parametrize("stacked", [False, True])
+@pytest.mark.parametrize("space", [False, True])
+def test_in_balance_nobody_knows(space, stacked):
     """On its edge, as near to the balance as numbers and joints allow: whatever is said, it does not stand at rest."""
-    found = engine.solve(let_go(1.0, coda=1.0))[0]
+    found = engine.solve(let_go(1.0, space, stacked, coda=1.0))[0]
     assert found["ending"] == "still moving"
     assert found["collapsed"] is None
+
+
+def test_a_frame_hardly_out_of_balance():
+    """Columns tilted beyond their balance, a lintel on their corners: the same balance, tan α = width/height."""
+    width, height, share = 0.8, 4.0, 1.0001
+    angle = share * math.atan(width / height)
+    cosine, sine = math.cos(angle), math.sin(angle)
+    lifted = [cosine * width - sine * height - width, sine * width + cosine * height - height]
+    case = tables(
+        block("ground", rectangle(-9.0, -1.0, 9.0, 0.0), fixed=True),
+        *(block(name, rectangle(x, 0.0, x + width, height)) for name, x in (("l", -1.9), ("r", 1.1))),
+        block("t", rectangle(-1.9, height, 1.9, height + 0.6)), joints={"dry": {"friction": 2.0}},
+        initial=[{"block": "l", "tilt": angle}, {"block": "r", "tilt": angle}, {"block": "t", "displacement": lifted}],
+        damping={"restitution": "housner"}, analysis={"kind": "time-history", "duration": 0.2},
+    )  # fmt: skip
+    assert engine.solve(case)[0]["collapsed"] is True
 
 
 def test_without_a_coda_a_second_more_is_looked_at():
@@ -108,3 +139,43 @@ def test_a_tenth_of_a_second_says_nothing_of_what_rocks():
     """It falls after some five seconds; one look after the motion it was taken for one that had turned back."""
     found = engine.solve(let_go(1.01, coda=0.1))[0]
     assert found["collapsed"] is None
+
+
+def test_blocks_flush_on_each_other_are_one_body():
+    """Blocks 0 and 1 meet along a face, 1 and 2 on a corner; 3 is alone."""
+    blocks, points = np.array([[0, 1], [0, 1], [1, 2]]), np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
+    bodies = bodies_of(blocks, points, 1e-6, 4)
+    assert bodies[0] == bodies[1]
+    assert len(set(bodies[1:].tolist())) == 3
+
+
+class Drawn:
+    """Places of one block, as `Swings` asks for them."""
+
+    smallest, free, settings = 1.0, slice(None), DEFAULT
+
+    def __init__(self, places: np.ndarray):
+        self.now, self._places = 0, places
+
+    def places(self) -> np.ndarray:
+        return self._places[self.now : self.now + 1, None]
+
+
+def grew(places: np.ndarray) -> bool:
+    drawn = Drawn(1e-4 * places)
+    swings = Swings(drawn)
+    for drawn.now in range(1, len(places)):
+        swings.look()
+    return swings.grew()
+
+
+def test_what_goes_on_is_not_at_rest():
+    time = np.linspace(0.0, 1.0, 21)
+    assert grew(np.cosh(1.2 * time) - 1.0)
+    assert grew(np.exp(1.2 * time))  # it "stood", since it moved already when it was first looked at
+    assert grew(-np.exp(1.2 * time))
+    assert grew(time)  # slides on
+    assert not grew(1.0 - np.exp(-4.0 * time))  # settles
+    assert not grew(np.cos(40.0 * time))  # trembles
+    assert not grew(np.exp(-time) * np.cos(40.0 * time))
+    assert not grew(1e-3 * time)  # next to nothing
