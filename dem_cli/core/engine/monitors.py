@@ -175,7 +175,7 @@ def extremes_of(times: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Find the highest of some values and its time, the lowest and its time [s], (n_monitors, 4); infinite where there
     are none. values: (n, n_monitors) at times (n,)."""
     if not len(times):
-        return np.tile([-np.inf, 0.0, np.inf, 0.0], (values.shape[1], 1))
+        return np.full((values.shape[1], 4), _NOTHING_YET)
     known = np.where(np.isfinite(values), values, 0.0)  # a run may end in nonsense
     high, low, each = known.argmax(axis=0), known.argmin(axis=0), np.arange(values.shape[1])
     return np.column_stack([known[high, each], times[high], known[low, each], times[low]])
