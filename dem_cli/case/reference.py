@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, cast
 
 from pydantic import Field, PrivateAttr, model_validator
 
 from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Pair, Positive
-from dem_cli.case.tolerance_rules import ReferenceKind, allowance
+from dem_cli.case.tolerance_rules import ReferenceKind, allowance, kind_of
 from dem_cli.case.wording import show
 
 Loads = tuple[float, ...]  # of a curve
@@ -58,13 +58,20 @@ class Reference(CaseModel):
     )
     kind: ReferenceKind = Field(
         default="exact",
-        description="where the value comes from: exact (mechanics), experiment, another code's answer, or inference: "
-        "an input of this case was inferred from it, so that it proves nothing; blind: predicted before it is measured",
+        description="where the value comes from: exact (mechanics), bounded (an interval of mechanics; so is an exact one), "
+        "experiment, another code's answer, or inference: an input of this case was inferred from it, or chosen by it, "
+        "so that it proves nothing; blind: predicted before it is measured",
     )
     scatter: Positive | None = Field(
         default=None,
-        description="of an experiment: standard deviation of repeated tests [unit of the quantity]; two of them pass",
+        description="of an experiment: standard deviation of repeated tests [unit of the quantity]; two of them pass "
+        "where 'specimens' are at least 4",
         examples=[0.0137],
+    )
+    specimens: Annotated[int, Field(ge=2)] | None = Field(
+        default=None,
+        description="of an experiment: how many tests 'scatter' is of [-]; below 4, or not given, 5 % pass",
+        examples=[10],
     )
     source: str = Field(
         default="", description="where the value comes from, in words", examples=["closed form: slides at tan φ"]
@@ -104,13 +111,17 @@ class Reference(CaseModel):
             raise KeyProblem("missing; must be a number, a list of 2 numbers, a string, true or false", "value")
         self._check_curve()
         self._check_tolerance()
+        interval = isinstance(self.value, tuple) and self.displacements is None
+        if self.kind == "bounded" and not interval:
+            raise KeyProblem("'bounded' is not allowed of one value; value = [lowest, highest] is missing", "kind")
+        object.__setattr__(self, "kind", cast(ReferenceKind, kind_of(self.kind, interval)))
         return self
 
     def _check_blind(self) -> None:
         """Check a prediction's question: it has no value before it is measured, and states the error of the model."""
         if self.quantity is None:
             raise KeyProblem("missing; of kind 'blind' it says what is predicted, such as 'failure_load'", "quantity")
-        refused = ("failure_load", "displacements", "tolerance", "relative", "scatter", "missed")
+        refused = ("failure_load", "displacements", "tolerance", "relative", "scatter", "specimens", "missed")
         for key in (key for key in refused if getattr(self, key) is not None):
             raise KeyProblem(f"not allowed of kind '{BLIND}'; what passes is the band of its prediction", key)
         if isinstance(self.value, (bool, str, tuple)):
@@ -166,6 +177,10 @@ class Reference(CaseModel):
         self._check_words(given)
 
     def _check_words(self, given: list[str]) -> None:
+        if self.specimens is not None and self.scatter is None:
+            raise KeyProblem(
+                f"{self.specimens} is not allowed without 'scatter', their standard deviation", "specimens"
+            )
         if self.scatter is not None and self.kind != "experiment":
             raise KeyProblem(f"{show(self.scatter)} is not allowed; only an experiment has a scatter", "scatter")
         if self.scatter is not None and given:
@@ -201,7 +216,7 @@ class Reference(CaseModel):
             return self.tolerance
         if self.relative is not None:
             return self.relative * max(map(abs, bounds))
-        return allowance(self.kind, self.path, bounds, self.scatter, self._resolution)
+        return allowance(self.kind, self.path, bounds, self.scatter, self.specimens, self._resolution)
 
 
 class Alternative(CaseModel):

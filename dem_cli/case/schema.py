@@ -298,6 +298,18 @@ class Case(CaseModel):
     )
     gravity: NonNegative = Field(default=9.81, description="acceleration towards −y, in 3D towards −z [m/s2]")
     seed: int = Field(default=1, ge=0, description="makes whatever is random reproducible")
+    inferred_from: tuple[Name, ...] = Field(
+        default=(),
+        description="results, by name, from which inputs of this case were inferred: none is a test of it. "
+        "Nothing that is computed changes",
+        examples=[["thesis_church.rigid_modelA_A"]],
+    )
+    chosen_by: tuple[Name, ...] = Field(
+        default=(),
+        description="results, by name, that were known when inputs of this case were chosen among others: none is a "
+        "test of it. Nothing that is computed changes",
+        examples=[["thesis_arch_shaking.harm_25"]],
+    )
     dem: ProgramStamp | None = Field(default=None, description="written by the program")
     materials: dict[str, Material] = Field(min_length=1, description="materials by name")
     joints: dict[str, Any] = Field(min_length=1, description="joints by name; the first is the default one")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from dem_cli.app.verify.records import Record
 
 PAGE = Path("docs/verification.md")
-SHELF = click.Choice(["verification", "validation", "cross-code", "inference", "blind"])
+SHELF = click.Choice(["verification", "bounds", "validation", "cross-code", "inference", "blind"])
 
 
 @click.command("verify", short_help="Run all cases with a [reference] and compare.")

@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from dem_cli.case.reader import near_file, parse_toml, read_text
+from dem_cli.case.tolerance_rules import kind_of
 from dem_cli.errors import DemError, UsageError
 
 SHELVES = {  # [reference] kind -> its shelf
     "exact": "verification",
+    "bounded": "bounds",
     "experiment": "validation",
     "code": "cross-code",
     "inference": "inference",
@@ -62,7 +64,13 @@ def kinds_of(path: Path) -> list[str]:
     except DemError:
         return ["?"]
     tables: list[Any] = table if isinstance(table, list) else [table]
-    return [str(one.get("kind", "exact")) if isinstance(one, dict) else "?" for one in tables]
+    return [_kind(one) if isinstance(one, dict) else "?" for one in tables]
+
+
+def _kind(table: dict[str, Any]) -> str:
+    """Return the kind of a [reference] table as it is read."""
+    interval = isinstance(table.get("value"), list) and "displacements" not in table
+    return kind_of(str(table.get("kind", "exact")), interval)
 
 
 def longest_first(cases: Sequence[Path], cost: Callable[[Path], float | None]) -> list[Path]:

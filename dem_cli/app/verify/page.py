@@ -14,14 +14,16 @@ from dem_cli.case.tolerance_rules import RULES
 ABOUT = {
     "verification": "Exact answers: closed forms, limit analysis, motions integrated apart from dem to full accuracy. "
     "They say whether the equations are solved right.",
+    "bounds": "Intervals between two bounds of mechanics. An answer outside is wrong; one inside need not be right.",
     "validation": "Experiments. They say whether these are the right equations, with the properties that the authors "
     "give.",
     "cross-code": "Answers of other programs to the same question, as their authors printed them.",
     "blind": "Predicted before they were measured, with numbers, date, version and hash of the case: see "
     "[blind predictions](blind.md). A band is the numerical one and that of the inputs, added up, with the error of "
     "the model on top. A measured value is met inside the band; nothing is adjusted afterwards.",
-    APART: "Numbers from which an input of their own case was inferred, as sizes of a lost figure or a calibrated "
-    "joint. That they come out shows that the arithmetic was done and nothing about dem: they count nowhere else.",
+    APART: "Numbers from which an input of their own case was inferred, or by which it was chosen, as sizes of a lost "
+    "figure or a calibrated joint. That they come out shows that the arithmetic was done and nothing about dem: they "
+    "count nowhere else.",
 }
 TITLES = {APART: "Arithmetic of inference"}
 KEPT = "\N{NO-BREAK SPACE}"
@@ -147,6 +149,13 @@ def _sources(records: Sequence[Record]) -> list[str]:
         for answer in record["references"]
         if answer.get("reason")
     ]
+    few = [
+        f"* {_link(record)}, `{answer['quantity']}`: {answer.get('specimens', 'few')} tests, standard deviation "
+        f"{answer['scatter']:g}, {100.0 * answer['scatter'] / abs(answer['value']):.2g} %."
+        for record in records
+        for answer in record["references"]
+        if answer.get("scatter")
+    ]
     missed = [
         f"* {_link(record)}, `{answer['quantity']}`: {_cell(answer['missed'])}."
         for record in records
@@ -154,7 +163,8 @@ def _sources(records: Sequence[Record]) -> list[str]:
         if answer["state"] == "missed"
     ]
     blind = any("predicted" in answer for record in records for answer in record["references"])
-    lists = {"Known misses:": missed, "Model errors:" if blind else "\\* Tolerances of their own:": own}
+    title = "Model errors:" if blind else "\\* Tolerances of their own:"
+    lists = {"Known misses:": missed, title: own, "Scatter of repeated tests:": few}
     return [*lines, "", *(line for title, those in lists.items() if those for line in (title, "", *those, ""))]
 
 

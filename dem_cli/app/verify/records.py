@@ -17,6 +17,7 @@ from dem_cli.results.output.reference import as_declared, error_of, unexpected_f
 from dem_cli.results.output.scalars import plain
 
 Record = dict[str, Any]  # of a case: see `record`
+ORIGINS = ("inferred_from", "chosen_by")  # keys of a case that change nothing that is computed
 VERDICT_STATES = ("passed", "missed", "failed", "met")  # of a reference; missed: as declared; met: declared as missed
 BLIND_STATES = ("predicted", "outside")  # of blind ones: not measured yet; measured outside the band, no failure
 
@@ -42,10 +43,11 @@ def record(path: Path, title: str, summary: Mapping[str, Any], case: Any, second
     return plain(kept)
 
 
-def _told(reference: Any) -> dict[str, str]:
-    """Return the source and reason of a [reference] for the page."""
+def _told(reference: Any) -> dict[str, Any]:
+    """Return the source, the reason and the scatter of a [reference] for the page."""
     own = reference.tolerance is not None or reference.relative is not None
-    return {"source": reference.source} | ({"reason": reference.reason or "not said"} if own else {})
+    repeated = {name: getattr(reference, name) for name in ("scatter", "specimens") if getattr(reference, name)}
+    return {"source": reference.source} | ({"reason": reference.reason or "not said"} if own else {}) | repeated
 
 
 def failed(path: Path, reason: str, bad: bool) -> Record:
@@ -62,9 +64,10 @@ def state(answer: Mapping[str, Any]) -> str:
 
 
 def digest(path: Path) -> str:
-    """Hash the content of a case file (SHA-256) without comments and spaces."""
+    """Hash the content of a case file (SHA-256) without comments, spaces, and where its inputs came from."""
     try:
-        said = json.dumps(parse_toml(path, read_text(path)), sort_keys=True, default=str)
+        case = parse_toml(path, read_text(path))
+        said = json.dumps({key: case[key] for key in case if key not in ORIGINS}, sort_keys=True, default=str)
     except DemError:
         said = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
     return hashlib.sha256(said.encode()).hexdigest()

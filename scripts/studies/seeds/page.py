@@ -10,7 +10,7 @@ from reference import book
 
 from dem_cli.app.verify.verdict_words import off, share, shown
 from dem_cli.results.output.reference import error
-from studies.seeds.rows import INPUT, MET, MISSED, NOT, UNKNOWN, SeedRow, rows
+from studies.seeds.rows import INPUT, MET, MISSED, NOT, REPEAT, UNKNOWN, SeedRow, rows
 from studies.template import filled, minus, table
 
 SEEDS = {"000": "thesis", "001": "paper 1 (Lemos 2019)", "002": "paper 2 (Bui and Limam)"}
@@ -35,10 +35,11 @@ def sentence(found: Sequence[SeedRow] | None = None) -> str:
     compared = count[MET] + count[MISSED]
     pending = f"; {count[UNKNOWN]} not run yet" if count[UNKNOWN] else ""
     return (
-        f"The thesis and the two papers print {len(found)} results: {compared} are compared with what dem computes, "
+        f"The thesis and the two papers print {len(found)} results; {count[REPEAT]} repeat others: {compared} are compared "
+        "with what dem computes, "
         f"{count[MET]} of them met within the rule and {count[MISSED]} missed, each with what is known of the cause; "
-        f"{count[INPUT]} are inputs of cases, or numbers that inputs were inferred from; {count[NOT]} are not "
-        f"computed{pending}."
+        f"{count[INPUT]} are inputs of cases, or numbers that inputs were inferred from or chosen by; {count[NOT]} are "
+        f"not computed{pending}."
     )
 
 
@@ -47,9 +48,17 @@ def _summary(found: Sequence[SeedRow]) -> str:
     lines = []
     for seed, name in [*SEEDS.items(), ("", "all")]:
         count = Counter(row.verdict for row in found if seed in ("", book(row.book)["source"]["seed"]))
-        cells = (count.total(), count[MET] + count[MISSED], count[MET], count[MISSED], count[INPUT], count[NOT])
+        cells = (
+            count.total(),
+            count[MET] + count[MISSED],
+            count[MET],
+            count[MISSED],
+            count[INPUT],
+            count[REPEAT],
+            count[NOT],
+        )
         lines.append((name, *map(str, cells), *([str(count[UNKNOWN])] if _pending(found) else [])))
-    head = ("seed", "results", "compared", MET, MISSED, "inputs", NOT)
+    head = ("seed", "results", "compared", MET, MISSED, "inputs", REPEAT, NOT)
     return table((*head, *([UNKNOWN] if _pending(found) else [])), lines)
 
 

@@ -41,7 +41,9 @@ def allowed(tmp_path, analysis: str, reference: str) -> float | None:
         ('kind = "pushover"', 'failure_load = 0.5\nkind = "code"', 0.05),
         ('kind = "pushover"', 'failure_load = 0.5\nkind = "experiment"', 0.05),
         ('kind = "pushover"', 'failure_load = 0.5\nkind = "inference"', 0.05),
-        ('kind = "pushover"', 'failure_load = 0.5\nkind = "experiment"\nscatter = 0.01', 0.04),
+        ('kind = "pushover"', 'failure_load = 0.5\nkind = "experiment"\nscatter = 0.01', 0.05),
+        ('kind = "pushover"', 'failure_load = 0.5\nkind = "experiment"\nscatter = 0.01\nspecimens = 3', 0.05),
+        ('kind = "pushover"', 'failure_load = 0.5\nkind = "experiment"\nscatter = 0.01\nspecimens = 4', 0.04),
         ('kind = "pushover"', 'failure_load = 0.5\nkind = "experiment"\nrelative = 0.1\nreason = "why"', 0.1),
         ('kind = "pushover"', "failure_load = 0.5\ntolerance = 0.1", 0.2),
         ('kind = "pushover"', 'quantity = "failure_load"\nvalue = [0.4, 0.5]\nkind = "code"', 0.05),
@@ -67,6 +69,8 @@ def test_words_have_none(tmp_path):
         ("failure_load = 0.5\nscatter = 0.1", "only an experiment has a scatter"),
         ('failure_load = 0.5\nkind = "experiment"\nscatter = 0.1\ntolerance = 0.1', "not allowed beside 'tolerance'"),
         ('failure_load = 0.5\nreason = "why"', "not allowed without 'tolerance' or 'relative'"),
+        ("failure_load = 0.5\nspecimens = 4", "not allowed without 'scatter'"),
+        ('failure_load = 0.5\nkind = "bounded"', "not allowed of one value"),
         ('quantity = "status"\nvalue = "ok"\nkind = "experiment"\nscatter = 0.1', "words and truths have none"),
     ],
 )
@@ -77,4 +81,9 @@ def test_what_makes_no_sense(tmp_path, reference, says):
 
 def test_every_kind_has_a_rule_and_a_shelf():
     assert set(KINDS) == set(RULES) == set(SHELVES)
-    assert all(Reference(failure_load=1.0, kind=kind).allowance for kind in KINDS if kind != "blind")  # has a band
+    assert all(Reference(failure_load=1.0, kind=kind).allowance for kind in KINDS if kind not in ("bounded", "blind"))
+
+
+@pytest.mark.parametrize(("given", "kind"), [("exact", "bounded"), ("bounded", "bounded"), ("code", "code")])
+def test_an_exact_interval_is_bounded(given, kind):
+    assert Reference(quantity="failure_load", value=(0.4, 0.5), kind=given).kind == kind
