@@ -58,9 +58,9 @@ class Reference(CaseModel):
     )
     kind: ReferenceKind = Field(
         default="exact",
-        description="where the value comes from: exact (mechanics), bounded (an interval of mechanics; so is an exact one), "
-        "experiment, another code's answer, or inference: an input of this case was inferred from it, or chosen by it, "
-        "so that it proves nothing; blind: predicted before it is measured",
+        description="where the value comes from: exact (mechanics), bounded (an interval of mechanics; so is an exact "
+        "one), experiment, another code's answer, or inference: an input of this case was inferred from it, or chosen "
+        "by it, so that it proves nothing; blind: predicted before it is measured",
     )
     scatter: Positive | None = Field(
         default=None,

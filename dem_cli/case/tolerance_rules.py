@@ -29,8 +29,8 @@ RULES = {
     "exact": f"of a failure load {OF_A_LOAD:g} × the resolution of the analysis, of a safety factor or critical value "
     f"the resolution, of other numbers {100.0 * OF_OTHER_NUMBERS:g} %",
     "bounded": "the interval between two bounds of mechanics, and nothing beyond; it says less than a value does",
-    "experiment": f"two standard deviations of {ENOUGH} or more repeated tests, or the interval between tests; of fewer "
-    f"{100.0 * OF_ONE_TEST:g} %, with their scatter beside it",
+    "experiment": f"two standard deviations of {ENOUGH} or more repeated tests, or the interval between tests; of "
+    f"fewer {100.0 * OF_ONE_TEST:g} %, with their scatter beside it",
     "code": f"{100.0 * OF_A_CODE:g} %, of a bracket beyond its ends",
     "inference": f"{100.0 * OF_A_CODE:g} %, which says no more than that the arithmetic was done",
     "blind": "the band of its prediction, written before anything was measured",

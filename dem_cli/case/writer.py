@@ -21,7 +21,7 @@ LEADING_KEYS = ("kind", "law", "id")  # keys that tell what a table is
 SEVERAL = (
     "materials", "joints", "structure", "block", "interface", "imperfection", "load", "strain", "settlement", "motion",
     "monitor", "reference", "groups", "pressure", "fill",
-    "alternative", "prediction",
+    "alternative", "prediction", "inferred_from", "chosen_by",
 )  # fmt: skip
 
 
@@ -39,7 +39,7 @@ def case_text(case: Case) -> str:
         elif isinstance(value, dict):
             data[key] = {name: _plain(item) for name, item in value.items()}
         elif isinstance(value, tuple):
-            data[key] = [effective(table) for table in value]
+            data[key] = _plain(value)
         else:
             data[key] = value
     dimensions.leave_out(data)

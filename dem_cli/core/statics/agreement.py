@@ -149,7 +149,7 @@ def doubts(search: FailureLoad, resolution: float, spread: dict[str, Any] | None
         )
     if search.alone:
         said.append(f"no second history says whether others end lower: {search.alone}")
-    if search.wide and search.width is not None:
+    if search.wide and search.width is not None and search.width > resolution:
         said.append(
             f"{_reached(search)} {search.carried:.5g}; not above {search.failed:.5g}: this bracket "
             f"of {percent(search.width)} is wider than the {percent(resolution)} asked for"

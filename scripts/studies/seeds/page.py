@@ -35,8 +35,8 @@ def sentence(found: Sequence[SeedRow] | None = None) -> str:
     compared = count[MET] + count[MISSED]
     pending = f"; {count[UNKNOWN]} not run yet" if count[UNKNOWN] else ""
     return (
-        f"The thesis and the two papers print {len(found)} results; {count[REPEAT]} repeat others: {compared} are compared "
-        "with what dem computes, "
+        f"The thesis and the two papers print {len(found)} results; {count[REPEAT]} repeat others: {compared} are "
+        "compared with what dem computes, "
         f"{count[MET]} of them met within the rule and {count[MISSED]} missed, each with what is known of the cause; "
         f"{count[INPUT]} are inputs of cases, or numbers that inputs were inferred from or chosen by; {count[NOT]} are "
         f"not computed{pending}."

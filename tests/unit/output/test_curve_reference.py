@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 from dem_cli.app.api import load_case
@@ -43,7 +45,8 @@ def test_mean_and_largest_error():
     [
         ({"tolerance": 1.9}, 1.9, False),
         ({"relative": 0.03}, 0.03 * 96.0, True),
-        ({"scatter": 1.1}, 2.2, True),
+        ({"scatter": 1.1, "specimens": 4}, 2.2, True),
+        ({"scatter": 1.1, "specimens": 3}, 0.05 * 96.0, True),
         ({"kind": "code"}, 0.05 * 96.0, True),
         ({"kind": "exact"}, 1e-3 * 96.0, False),
         ({"value": [50.0, 80.0]}, 4.0, False),
@@ -66,7 +69,8 @@ def test_a_curve_that_ends_before_says_so():
 def test_the_page_of_verification(tmp_path):
     file = tmp_path / "case.toml"
     file.write_text("", encoding="utf-8")
-    (answer,) = record(file, "a wall", SUMMARY, [reference()], 1.0)["references"]
+    case = SimpleNamespace(compared=(reference(),), blind=(), prediction=())
+    (answer,) = record(file, "a wall", SUMMARY, case, 1.0)["references"]
     said = (found(answer), expected(answer), off(answer), allowed(answer))
     assert said == ("up to 100", "up to 96 in 2 points", "2 on average", "± 4.8")
     assert share(answer) == pytest.approx(2.0 / 96.0)
