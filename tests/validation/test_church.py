@@ -29,9 +29,7 @@ FITTED = replace(Slice(), side=FITTED_SIDE)
 
 def of_the_book(name: str) -> float:
     """Table A-2 or A-3."""
-    whole, letter, _ = cases.PRINTED[name]
-    label = {"buttress": "A", "d": "C"}[letter] if whole == "church_b" else letter.upper()
-    return value(BOOK, f"rigid_model{whole[-1].upper()}_{label}")
+    return value(BOOK, cases.printed_as(name))
 
 
 def test_case_files_are_the_geometry():

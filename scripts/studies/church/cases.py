@@ -88,6 +88,13 @@ def wall(name: str, bay: Slice | None = None, **analysis: Any) -> dict[str, Any]
     return alone(model(whole, bay, **analysis), letter, f"Church, {WALLS[letter]}, {when}, alone")
 
 
+def printed_as(name: str) -> str:
+    """Return the name of the load of a wall in the data book."""
+    whole, letter, _ = PRINTED[name]
+    label = {"buttress": "A", "d": "C"}[letter] if whole == "church_b" else letter.upper()
+    return f"rigid_model{whole[-1].upper()}_{label}"
+
+
 def reference(value: float | list[float], where: str, kind: str, missed: str = "") -> list[dict[str, Any]]:
     """[[reference]] of the failure load."""
     middle = sum(value) / 2 if isinstance(value, list) else value
@@ -97,9 +104,11 @@ def reference(value: float | list[float], where: str, kind: str, missed: str = "
 
 def text(case: Mapping[str, Any], comment: str) -> str:
     """A case file: lists of points on one line each."""
-    first = {key: case[key] for key in ("title", "materials", "joints")}
+    title = tomli_w.dumps({"title": case["title"]})
+    title += f"inferred_from = {json.dumps(case['inferred_from'])}\n" if "inferred_from" in case else ""
+    first = {key: case[key] for key in ("materials", "joints")}
     last = {key: case[key] for key in ("analysis", "output")}
-    parts = [comment, on_one_line(tomli_w.dumps(first)), *(several("interface", case)), *map(block_text, case["block"]),
+    parts = [comment, f"{title}\n{on_one_line(tomli_w.dumps(first))}", *(several("interface", case)), *map(block_text, case["block"]),
              on_one_line(tomli_w.dumps(last)), *several("monitor", case), *several("reference", case)]  # fmt: skip
     return "\n".join(parts)
 
@@ -148,6 +157,7 @@ def files() -> dict[str, str]:
     for name, (whole, _, load) in PRINTED.items():
         case = wall(name, resolution=0.002)
         table = "Table A-2" if whole == "church_a" else "Table A-3"
+        case["inferred_from"] = [f"thesis_church.{printed_as(name)}"]
         case["reference"] = reference(load, f"{table}, from which a length was inferred", "inference")
         found[name] = text(case, comment(name))
     return found
