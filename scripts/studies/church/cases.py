@@ -108,7 +108,8 @@ def text(case: Mapping[str, Any], comment: str) -> str:
     title += f"inferred_from = {json.dumps(case['inferred_from'])}\n" if "inferred_from" in case else ""
     first = {key: case[key] for key in ("materials", "joints")}
     last = {key: case[key] for key in ("analysis", "output")}
-    parts = [comment, f"{title}\n{on_one_line(tomli_w.dumps(first))}", *(several("interface", case)), *map(block_text, case["block"]),
+    head = f"{title}\n{on_one_line(tomli_w.dumps(first))}"
+    parts = [comment, head, *several("interface", case), *map(block_text, case["block"]),
              on_one_line(tomli_w.dumps(last)), *several("monitor", case), *several("reference", case)]  # fmt: skip
     return "\n".join(parts)
 
