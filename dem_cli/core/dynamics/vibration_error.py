@@ -122,11 +122,12 @@ def vibration_error(
         )
     sizes = np.sqrt((shapes[:, :, :d] ** 2).sum(axis=2)).max(axis=1)
     free = free_vibration(sim, springs, omegas, shapes, initial) if initial else np.zeros(len(omegas))
-    if free.any():
+    largest = float((sizes * free).max())  # 0 where blocks spin about their centroids alone
+    if largest > 0.0:
         lasts = np.minimum(duration, np.divide(1.0, fading, out=np.full(len(fading), np.inf), where=fading > 0.0))
         drifts = sizes * free * np.minimum(shift * lasts * functions.exp(-fading * lasts), 2.0)
         k = int(drifts.argmax())
-        worst = VibrationError(float(drifts[k] / (sizes * free).max()), float(omegas[k]) / (2.0 * math.pi))
+        worst = VibrationError(float(drifts[k]) / largest, float(omegas[k]) / (2.0 * math.pi))
     for times, group in _sampled_alike(motions):
         along = np.array([motion.direction for motion in group])
         ways = sizes * np.abs(np.einsum("knj,n,mj->mk", shapes[:, :, :d], model.masses * ~model.fixed, along))
