@@ -91,7 +91,7 @@ def test_all_well(folder):
     assert (load["state"], load["found"]) == ("passed", pytest.approx(0.4, abs=0.001))
     assert load["error"] == pytest.approx(load["found"] - 0.4)
     assert cases["missed"]["references"][0]["state"] == "missed"
-    assert [answer["kind"] for answer in cases["stands"]["references"]] == ["code", "exact"]
+    assert [answer["kind"] for answer in cases["stands"]["references"]] == ["code", "bounded"]
 
 
 def test_table(folder):
