@@ -71,9 +71,8 @@ class Clock(Observer):
 
     def certificates(self, found: Certificates) -> None:
         """Pass the certificates of a pushover to the observer, off the clock."""
-        begun = time.perf_counter()
-        self.observer.certificates(found)
-        self.observing += time.perf_counter() - begun
+        with self._observing():
+            self.observer.certificates(found)
 
     def structure(self, model: Model) -> None:
         """Pass another structure to the observer."""

@@ -312,7 +312,7 @@ class Monitors:
 
     @cached_property
     def _gauges(self) -> Gauges:
-        """What is the same in all stretches, but for the arms of points on blocks that deform."""
+        """Gauges as they are at the beginning of every stretch, but for the arms of points on blocks that deform."""
         d, gauged, places, points = self.model.dimension, self.gauged, self._points, self._gauged_points
         axes = np.zeros((len(gauged), d))
         for row, monitor in zip(axes, gauged):

@@ -214,7 +214,8 @@ class ImplicitHistory:
                 self._keep(load, state, reached)
                 return Level(load, HOLDS, steps, load)
             half = [one.load for one in past if one.displacement <= 0.5 * reached]
-            least = load - max(one.load for one in past[len(half) :])  # that lacked while the displacement doubled
+            since = [one.load for one in past if one.displacement > 0.5 * reached]  # none where it went back
+            least = load - max(since, default=load)  # that lacked while the displacement doubled
             if reached > far and half and least > settings.flat * (load - half[-1]):
                 self.high = load
                 return Level(load, FAILS, steps, max(one.load for one in past))
