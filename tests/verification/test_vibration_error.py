@@ -83,7 +83,7 @@ def test_an_undamped_vibration_is_right_as_well():
 
 
 def started(ratio: float, dimension: int, **initial) -> dict:
-    """The same block, which starts displaced or moving upwards; its ground is at rest."""
+    """A block on an elastic joint that starts displaced or moving upwards; its ground is at rest."""
     case = shaken(DAMPINGS.get(ratio, {"none": True}), dimension)
     case.pop("motion")
     up = [0.0] * (dimension - 1) + [1.0]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dem_cli.core.arithmetic.connected_groups import connected_groups
 from dem_cli.core.arithmetic.products import product
 from dem_cli.core.engine.measures import contact_record
 
@@ -36,14 +37,9 @@ def bodies_of(blocks: np.ndarray, points: np.ndarray, least: float, n_blocks: in
 
     blocks (n, 2) and points (n, d) [m] of the contacts that press; least: what counts as one place or line [m].
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     pairs, number = np.unique(blocks, axis=0, return_inverse=True)
     flush = [k for k in range(len(pairs)) if not _on_an_edge(points[number == k], least)]
-    joined = pairs[flush]
-    graph = coo_array((np.ones(len(joined)), joined.T), (n_blocks, n_blocks))
-    return connected_components(graph, directed=False)[1]
+    return connected_groups(pairs[flush], n_blocks)
 
 
 def _on_an_edge(places: np.ndarray, least: float) -> bool:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dem_cli.core.arithmetic.connected_groups import connected_groups
 from dem_cli.core.arithmetic.products import norm, product
 from dem_cli.core.arithmetic.small_matrices import least_squares, singular
 from dem_cli.core.geometry.facets import Facets
@@ -52,7 +53,7 @@ def on_common_planes(blocks: Sequence[Facets], pairs: np.ndarray, tolerance: flo
     """
     faces = _faces(blocks)
     sizes = np.array([norm(np.ptp(block.points, axis=0)) for block in blocks])[faces.owners]
-    group = _groups(len(faces.owners), _facing(faces, pairs, tolerance))
+    group = connected_groups(_facing(faces, pairs, tolerance), len(faces.owners))
     normals, heights, fitted, left = _planes(faces, group, EXACT * sizes, tolerance)
     points, moved, farthest = [], 0, 0.0
     for k, block in enumerate(blocks):
@@ -108,13 +109,6 @@ def _facing(faces: _AllFaces, pairs: np.ndarray, tolerance: float) -> np.ndarray
         return np.zeros((0, 2), np.int64)
     worst = np.maximum.reduceat(off, np.cumsum(counts) - counts)
     return np.column_stack([i, j])[worst <= tolerance]
-
-
-def _groups(n: int, pairs: np.ndarray) -> np.ndarray:
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    return connected_components(coo_array((np.ones(len(pairs)), pairs.T), (n, n)), directed=False)[1]
 
 
 def _planes(

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dem_cli.core.arithmetic import functions
+from dem_cli.core.arithmetic.connected_groups import connected_groups
 from dem_cli.core.arithmetic.products import norm, product
 from dem_cli.core.geometry.polyhedron import newell, size
 from dem_cli.masonry.imports.contents import FileBody, FileProblem
@@ -94,14 +95,11 @@ def _tidy(loop: np.ndarray) -> np.ndarray:
 
 def _merged(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Merge coinciding points; returns the distinct ones and the index of each point among them."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
     exact, numbers = np.unique(points, axis=0, return_inverse=True)
     pairs = cKDTree(exact).query_pairs(SAME_POINT * size(points), output_type="ndarray")
-    graph = coo_array((np.ones(len(pairs)), pairs.T), (len(exact), len(exact)))
-    _, group = connected_components(graph, directed=False)
+    group = connected_groups(pairs, len(exact))
     _, first, which = np.unique(group, return_index=True, return_inverse=True)
     return exact[first], which[numbers.ravel()]
 
@@ -159,11 +157,8 @@ def _around(points: np.ndarray, loops: list[np.ndarray], edges: _Edges, edge: in
 
 def _solids(points: np.ndarray, loops: list[np.ndarray], pairs: np.ndarray) -> list[Shell]:
     """Group connected faces to shells, in the order of their first faces."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    graph = coo_array((np.ones(len(pairs)), pairs[:, :2].T), (len(loops), len(loops)))
-    count, group = connected_components(graph, directed=False)
+    group = connected_groups(pairs[:, :2], len(loops))
+    count = int(group.max(initial=-1)) + 1
     mended = np.unique(group[pairs[pairs[:, 2] != 0, 0]])
     turned = _turned(len(loops), pairs, group, mended) if len(mended) else np.zeros(len(loops), bool)
     order = np.argsort(group, kind="stable")

@@ -61,7 +61,7 @@ def _drifts(cases: dict[str, dict[str, Any]]) -> str:
 
 
 def _alternatives(cases: dict[str, dict[str, Any]]) -> str:
-    """What was varied, once for all cases that vary it."""
+    """Rows of the varied inputs, once for all cases that vary them."""
     found: dict[tuple[str, str], list[str]] = {}
     for stem, case in cases.items():
         for one in case.get("alternative", []):

@@ -6,9 +6,10 @@ import sys
 import numpy as np
 import pytest
 from scipy.sparse import block_diag, csc_array, diags_array, eye_array, kron, random_array
-from scipy.sparse.csgraph import reverse_cuthill_mckee
+from scipy.sparse.csgraph import connected_components, reverse_cuthill_mckee
 
 from dem_cli.core.arithmetic import functions
+from dem_cli.core.arithmetic.connected_groups import connected_groups
 from dem_cli.core.arithmetic.products import norm, product
 from dem_cli.core.arithmetic.small_matrices import (
     determinants,
@@ -124,6 +125,13 @@ def test_a_sparse_system_is_solved_without_the_heavy_parts_of_scipy():
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines() == ["[0.5, 0.25]", "[]"]
+
+
+@pytest.mark.parametrize(("n", "many"), [(1, 0), (5, 0), (40, 20), (40, 200), (300, 250)])
+def test_connected_groups_are_those_of_scipy(n, many):
+    pairs = np.random.default_rng(n + many).integers(0, n, (many, 2))
+    graph = csc_array((np.ones(many), pairs.T), (n, n))
+    assert connected_groups(pairs, n).tolist() == connected_components(graph, directed=False)[1].tolist()
 
 
 def test_a_sparse_matrix_without_a_pivot():
