@@ -27,9 +27,7 @@ ABOUT = {
 }
 TITLES = {APART: "Arithmetic of inference"}
 KEPT = "\N{NO-BREAK SPACE}"
-BLIND_HEAD = (
-    "case", "quantity", "predicted", "numerical", "inputs", "model", "band", "on", "measured", "error", "verdict",
-)  # fmt: skip
+BLIND_HEAD = ("case", "quantity", "predicted (numerical band)", "inputs", "model", "band", "measured", "verdict")
 TABLE_HEAD = ("case", "quantity", "ours", "reference", "difference", "error", "allowed", "verdict")
 INTRO = """# What dem gets right, and what it misses
 
@@ -107,18 +105,20 @@ def _table(records: Sequence[Record]) -> list[str]:
 
 
 def _predictions(records: Sequence[Record]) -> list[str]:
-    """Format the table of blind predictions, whose bands stand apart."""
+    """Format the table of blind predictions, whose bands stand apart; the day stands once for each case."""
     rows = []
     for record in records:
+        days = dict.fromkeys(f"{answer['date']} with dem {answer['version']}" for answer in record["references"])
         for number, answer in enumerate(record["references"]):
-            name = f"{_link(record)}<br>{_cell(record['title'])}" if number == 0 else ""
-            size, bands = share(answer), (shown(answer[key]) for key in ("numerical", "inputs"))
+            case = f"{_link(record)}<br>{_cell(record['title'])}<br>on {', '.join(days)}"
+            value = f"{shown(answer['predicted'])} ({shown(answer['numerical'])})"
             middle, half = sum(answer["model"]) / 2.0, (answer["model"][1] - answer["model"][0]) / 2.0
-            model, band = f"{_percent(middle)} ± {_percent(half, False)}", f"**{shown(answer['band'])}**"
+            model = f"{_percent(middle)} ± {_percent(half, False)}"
+            size = share(answer)
+            measured = expected(answer) + (f"<br>{_percent(size)}" if size is not None else "")
             rows.append([
-                name, f"`{answer['quantity']}`", shown(answer["predicted"]), *bands, model, band,
-                f"{answer['date']}, dem {answer['version']}", expected(answer), "" if size is None else _percent(size),
-                VERDICTS[answer["state"]],
+                "" if number else case, f"`{answer['quantity']}`", value, shown(answer["inputs"]), model,
+                f"**{shown(answer['band'])}**", measured, VERDICTS[answer["state"]],
             ])  # fmt: skip
     return _rows(BLIND_HEAD, rows)
 
