@@ -142,6 +142,8 @@ DAMAGES = {
     "a mass is no number": ("plane", edited("dem/model/masses", first(np.nan)), "/dem/model/masses is not finite"),
     "a place is infinite": ("space", edited("dem/frames/positions", first(np.inf)), "positions is not finite"),
     "a corner beyond all": ("space", edited("dem/model/vertices", first(1.7e308)), "vertices holds 1.7e+308; products"),
+    "a place beyond pictures": ("plane", edited("dem/frames/positions", first(-1e300)), "positions holds 1e+300"),
+    "a block without parts": ("space", edited("dem/model/part_blocks", lambda v: v * 0), "leaves a block without any"),
     "a frame is cut off": ("plane", edited("dem/frames/load", lambda v: v[:-1]), "/dem/frames/load has the shape"),
     "an axis more": ("plane", edited("dem/history/load", lambda v: v[:, None]), "/dem/history/load has the shape"),
     "a block too many": ("plane", edited("dem/model/fixed", lambda v: np.append(v, v)), "fixed has the shape"),
@@ -166,6 +168,7 @@ DAMAGES = {
     "a summary with NaN": ("plane", written('{"title": NaN}'), "summary.json is not valid JSON (NaN"),
     "no status": ("plane", said("status"), "summary.json: status is missing"),
     "a load in words": ("plane", said("failure_load", value="high"), "summary.json: failure_load is not a number"),
+    "a load beyond pictures": ("plane", said("failure_load", value=-1e300), "failure_load is not in its range"),
     "half a bracket": ("plane", said("failure_load_bracket", value=[0.1]), "failure_load_bracket is not two numbers"),
     "a load beyond all": ("plane", said("failure_load", value=10**400), "summary.json: failure_load is not"),
     "a peak without unit": ("shaken", said("peaks", "top displacement x", "unit"), 'x".unit is missing'),
@@ -208,6 +211,14 @@ def test_frames_that_are_read_later_are_checked_then(whole, tmp_path):
         assert result.frames[0].step >= 0
         with pytest.raises(DamagedResults, match="/dem/contacts/normal_force is not finite"):
             result.frames[-1]
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_numbers_of_half_precision_are_read(whole, tmp_path):
+    shutil.copytree(whole / "plane", tmp_path / "results")
+    edited("dem/model/live_loads", lambda v: np.ones(v.shape, "f2"))(tmp_path / "results")
+    with dem_cli.open(tmp_path / "results") as result:
+        assert result.model.live_loads.max() == 1.0
 
 
 def test_results_that_were_compressed_are_read(whole, tmp_path):

@@ -57,6 +57,8 @@ FILES = {
     "strong.csv": "0,0\n0.01,1e29\n0.02,0\n",
     "line.csv": "0,0\n" + "0," * 500_001 + "\n",
     "around.svg": SVG.format(f'<polygon points="{" ".join(f"{x:.9g},{y:.9g}" for x, y in AROUND)}"/>'),
+    "other.svg": SVG.format('<rect width="1" height="1"/>').replace("2000", "2001"),
+    "far.svg": SVG.format('<rect y="1e9" width="1200" height="200"/><rect width="400" height="200"/>'),
     "itself.svg": SVG.format('<g id="a"><rect width="1" height="1"/><use x:href="#a"/></g>'),
     "repeated.svg": repeated(8),
     "face.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf " + "1 2 3 " * MOST_CORNERS + "\n",
@@ -85,6 +87,11 @@ REFUSED = {
     "corners of a block": (f"{JOINT}[[block]]\nid = 'b'\nvertices = {list(map(list, AROUND))}", "at most 5,000 lists"),
     "a drawing in itself": (f'{JOINT}{IMPORT}"itself.svg"', "'#a' refers to itself"),
     "a drawing that grows": (f'{JOINT}{IMPORT}"repeated.svg"', "shapes, all that it repeats; at most 1,000,000"),
+    "a drawing of another kind": (f'{JOINT}{IMPORT}"other.svg"', "<{http://www.w3.org/2001/svg}svg>, not an SVG"),
+    "a drawing of stones far apart": (
+        f'{JOINT}{IMPORT}"far.svg"\nunit = "mm"',
+        "its corners fall together where faces are put onto one plane over 1 m; give a smaller snap",
+    ),
     "solids in one place": (f'{SPACE}{IMPORT}"cubes.obj"', "100 others have the same corners"),
     "blocks in one place": (
         JOINT + "".join(f"[[block]]\nid = 'b{k}'\nfixed = true\n{SQUARE}\n" for k in range(MOST_TOGETHER + 2)),
@@ -99,6 +106,29 @@ REFUSED = {
         f'{SPACE}[[structure]]\nkind = "building"\nblock = [0.5, 0.2, 0.3]\ncourses = 3\n[[structure.walls]]\n'
         "id = 'w'\naxis = [[0.0, 0.0], [4.0, 0.0]]\ngable = { height = 1e18 }",
         "gable.height: 5e+18 blocks are too many",
+    ),
+    "quoins": (
+        f"{JOINT}[[structure]]\nkind = 'voronoi-wall'\nsize = [4.0, 3e8]\nthickness = 0.5\ncell = 0.4\n"
+        "quoins = { length = 0.6, height = 0.3 }",
+        "quoins.height: makes 2e+09 stones; at most 100,000",
+    ),
+    "courses of spandrels": (
+        f"{JOINT}[[structure]]\nkind = 'bridge'\nspan = 3.0\nring = 0.4\nvoussoirs = 9\n"
+        "spandrels = { block = [0.8, 0.4], cover = 5e6 }",
+        "spandrels.block: 7.19e+07 blocks are too many",
+    ),
+    "courses of a section": (
+        f"{JOINT}[[structure]]\nkind = 'wall-section'\nsize = [0.7, 1e11]\ncourse = [0.25, 0.03]\n"
+        "face = [0.2, 0.03]\ncell = 0.2",
+        "course: makes 8e+11 stones; at most 100,000",
+    ),
+    "stones of a herringbone": (
+        f"{JOINT}[[structure]]\nkind = 'herringbone-wall'\nsize = [1.0, 1.0]\nthickness = 0.3\nblock = [2e7, 0.2]",
+        "block: a length of 2e+07 is not allowed; must be at most 1.414, the diagonal of the wall",
+    ),
+    "squares of a herringbone": (
+        f"{JOINT}[[structure]]\nkind = 'herringbone-wall'\nsize = [10.0, 10.0]\nthickness = 0.3\nblock = [10.0, 0.001]",
+        "block: 1e+08 blocks are too many",
     ),
     "a name that no file has": (f'{RECORD}"{"a" * 300}.csv"', "aa... cannot be opened (File name too long)"),
     "a drawing that no file is": (f'{JOINT}{IMPORT}"{"a" * 300}.svg"', "aa... cannot be opened (File name too long)"),
@@ -152,6 +182,31 @@ def test_a_drawing_that_inserts_itself(tmp_path):
     (tmp_path / "case.toml").write_text(f'{JOINT}{IMPORT}"itself.dxf"', encoding="utf-8")
     done = CliRunner().invoke(main, ["check", str(tmp_path / "case.toml")])
     assert (done.exit_code, "'A' refers to itself" in done.output) == (2, True), done.output
+
+
+def damaged_drawing(folder, old, new):
+    """A drawing of a wall in which some bytes are others; what `dem check` says of it."""
+    ezdxf = pytest.importorskip("ezdxf")
+    drawing = ezdxf.new()
+    drawing.modelspace().add_lwpolyline([(0, 0), (1234, 0), (1234, 800), (0, 800)], close=True)
+    drawing.saveas(folder / "wall.dxf")
+    data = (folder / "wall.dxf").read_bytes()
+    assert old in data
+    (folder / "wall.dxf").write_bytes(data.replace(old, new))
+    wall = "[[structure]]\nkind = 'wall'\nblock = [0.4, 0.2]\noutline = { file = 'wall.dxf', unit = 'mm' }\n"
+    (folder / "case.toml").write_text(JOINT + wall, encoding="utf-8")
+    return CliRunner().invoke(main, ["check", str(folder / "case.toml")])
+
+
+@pytest.mark.parametrize("new", [b"\x98", b"1\x98", b"1e999", b"nan"])
+@pytest.mark.filterwarnings("error")
+def test_a_drawing_of_damaged_bytes(tmp_path, new):
+    """What is no text, and numbers that are none, are named in one line that a terminal and a page can show."""
+    done = damaged_drawing(tmp_path, b"1234.0", new)
+    assert done.exit_code == 2, done.output
+    assert done.output.startswith("error: ")
+    assert len(done.output.splitlines()) == 1
+    done.output.encode("utf-8")
 
 
 @pytest.mark.parametrize(("path", "says"), [("/dev/zero", "is a device"), ("/", "is a folder")])

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.errors import CONTROLS
+from dem_cli.errors import CONTROLS, printable
 from dem_cli.input_limits import DRAWING_BYTES, MOST_BLOCKS, MOST_CORNERS, MOST_FACES, MOST_SHAPES, what_else
 
 UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
@@ -17,6 +17,10 @@ UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.304
 
 class FileProblem(ValueError):
     """Error of a geometry file that cannot be read or contains no blocks: one message, without the file name."""
+
+    def __init__(self, message: str):
+        """Escape what names of a damaged file hold and no message can."""
+        super().__init__(printable(" ".join(message.split())))
 
 
 class FileBody(NamedTuple):

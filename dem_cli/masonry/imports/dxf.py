@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dem_cli.errors import MissingExtra
-from dem_cli.masonry.imports.contents import Contents, FileBody, FileProblem, written_out
+from dem_cli.masonry.imports.contents import Contents, FileBody, FileProblem, finite, written_out
 
 UNITS = {0: "", 1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 14: "dm"}  # of $INSUNITS; 0: it says none
 OUTLINES, PIECES = ("LWPOLYLINE", "POLYLINE"), ("LINE", "ARC")
@@ -138,7 +138,7 @@ def _ring(path: Any, layer: str, chords: int | None) -> np.ndarray:
         else:
             points.append(command.end)
         start = command.end
-    return np.array([[point.x, point.y] for point in points], float)
+    return finite([[point.x, point.y] for point in points], f"layer '{layer}'")
 
 
 def _curve(start: Any, command: Any, chords: int) -> list[Any]:

@@ -70,7 +70,12 @@ def solids_of(bodies: Sequence[FileBody], factor: float, how: Reading) -> tuple[
     notes = []
     if tolerance > 0.0:
         snapped = on_common_planes(facets, _near(facets, tolerance), tolerance)
-        facets = [_again(each, points) for each, points in zip(facets, snapped.points, strict=True)]
+        for k, (each, points) in enumerate(zip(facets, snapped.points, strict=True)):
+            try:
+                facets[k] = _again(each, points)
+            except FileProblem as error:
+                what, how = called(bodies[owners[k] - 1], owners[k]), f"over {tolerance:.3g} m; give a smaller snap"
+                raise FileProblem(f"{what}: {error} {how}") from None
         notes = _notes(snapped, tolerance)
     solids = []
     for number, each in zip(owners, facets, strict=True):
@@ -140,9 +145,11 @@ def _facets(shape: Any, tolerance: float) -> Facets:
 
 
 def _again(facets: Facets, points: np.ndarray) -> Facets:
-    """Rebuild the facets of a solid after its corners moved."""
+    """Rebuild the facets of a solid after its corners moved. Raises FileProblem where sides have no length left."""
     if points is facets.points or (points == facets.points).all():
         return facets
+    if points.shape[1] == 2 and (points == np.roll(points, 1, axis=0)).all(axis=1).any():
+        raise FileProblem("its corners fall together where faces are put onto one plane")
     if points.shape[1] == 2:
         return facets_of_outline(points)
     gap = polyhedron.COPLANAR * polyhedron.size(points)

@@ -44,7 +44,7 @@ def read(path: Path, chords: int | None = None, only: Collection[str] = (), skip
 
 def _parsed(path: Path, left_out: Counter[str]) -> Any:
     try:
-        from svgelements import SVG
+        from svgelements import SVG, Group
     except ImportError:
         raise MissingExtra("reading SVG files needs svgelements", "import") from None
     try:
@@ -55,7 +55,10 @@ def _parsed(path: Path, left_out: Counter[str]) -> Any:
             root.attrib.pop(key, None)
         left_out["hidden"] += sum(map(_is_hidden, root.iter()))
         _check_uses(root)
-        return SVG.parse(io.BytesIO(ElementTree.tostring(root)), reify=True)
+        drawn = SVG.parse(io.BytesIO(ElementTree.tostring(root)), reify=True)
+        if not isinstance(drawn, Group):  # of another namespace
+            raise FileProblem(f"<{root.tag}>, not an SVG drawing")
+        return drawn
     except FileProblem:
         raise
     except Exception as error:  # of the parsers: whatever they stumble over

@@ -118,7 +118,10 @@ class Bridge(StructureBase):
                 f"{self.spandrels.thickness:g} is not allowed; must be at most {self.width / 2.0:g}, half the width"
             )
             raise KeyProblem(message, "spandrels", "thickness")
-        _elevation(self)
+        elevation = _elevation(self)
+        if self.spandrels:
+            levels = _spandrel_levels(self.spandrels, elevation)
+            check_count(levels.courses * float(elevation.faces[-1, 1]) / self.spandrels.block[0], "spandrels", "block")
         return self
 
 
@@ -261,9 +264,7 @@ def _laid(bridge: Bridge, elevation: Elevation) -> Iterator[Block]:
     table, length = bridge.spandrels, float(elevation.faces[-1, 1])
     block, levels, spans = (length, 1.0), elevation.top + np.arange(2.0), list[tuple[tuple[float, float]]]()
     if table:
-        block, crown = table.block, max(opening.void.reach[3] for opening in elevation.openings)
-        high = crown + table.cover
-        count = max(1, round((high - elevation.top) / block[1]))
+        block, (count, high) = table.block, _spandrel_levels(table, elevation)
         levels, spans = np.linspace(elevation.top, high, count + 1), [((0.0, length),)] * count
     masonry = Masonry(
         length=block[0],
@@ -275,6 +276,18 @@ def _laid(bridge: Bridge, elevation: Elevation) -> Iterator[Block]:
     )
     for one in masonry_blocks(masonry):
         yield from _voussoir(bridge, one) if not one.course else _spandrel(bridge, one)
+
+
+class SpandrelLevels(NamedTuple):
+    """Number of courses of spandrels, and the level of the deck [m]."""
+
+    courses: int
+    deck: float
+
+
+def _spandrel_levels(table: Spandrels, elevation: Elevation) -> SpandrelLevels:
+    deck = max(opening.void.reach[3] for opening in elevation.openings) + table.cover
+    return SpandrelLevels(max(1, round((deck - elevation.top) / table.block[1])), deck)
 
 
 def _voussoir(bridge: Bridge, block: Block) -> list[Block]:

@@ -160,7 +160,7 @@ def read_summary(folder: Path) -> dict[str, Any]:
         raise UsageError(f"{path}: {error}") from None
     except (ValueError, RecursionError) as error:
         raise DamagedResults(f"{SUMMARY} is not valid JSON ({_reason(error)})", folder) from None
-    from dem_cli.results.output.integrity.summary_keys import check_summary
+    from dem_cli.results.output.integrity.summary_checks import check_summary
 
     try:
         return check_summary(found)

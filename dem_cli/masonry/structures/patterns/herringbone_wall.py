@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from typing import Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from dem_cli.case.base import KeyProblem, Positive
+from dem_cli.case.base import KeyProblem, Positive, check_count
 from dem_cli.core.arithmetic.products import product
 from dem_cli.core.model.blocks import Block
 from dem_cli.input_limits import MOST_STONES
@@ -49,6 +50,12 @@ class HerringboneWall(PatternWall):
             near = round(length / height) * height
             message = f"a length of {length:g} is not allowed; must be a whole number of heights, such as {near:.4g}"
             raise KeyProblem(f"{message}, else stones do not interlock", "block")
+        diagonal = math.hypot(*self.extent)
+        if length > diagonal * (1.0 + 1e-9):
+            message = f"a length of {length:g} is not allowed; must be at most {diagonal:.4g}, the diagonal of the wall"
+            raise KeyProblem(message, "block")
+        if self.bond == "interlocked":  # each stone is so many squares in a row
+            check_count(self.extent[0] * self.extent[1] / height**2, "block")
         count = self.extent[0] * self.extent[1] / (length * height)
         if count > MOST_STONES:
             raise KeyProblem(f"makes {count:.3g} stones; at most {MOST_STONES:,}", "block")
@@ -74,10 +81,8 @@ def _interlocked(wall: HerringboneWall, length: float, height: float) -> Tiling:
     numbers: dict[tuple[int, int], int] = {}
     stones: list[Loop] = []
     for i in range(-reach, reach + 1):
-        for j in range(-reach, reach + 1):
+        for j in _columns(i, n, reach, (along / side).tolist(), (-margin / side, *((far / side).tolist()))):
             where = (i - j) % (2 * n)
-            if where not in (0, 2 * n - 1):
-                continue
             wide, high = (n, 1) if where == 0 else (1, n)
             middle = (i + wide / 2.0) * along + (j + high / 2.0) * up
             if (middle < -margin).any() or (middle > far).any():
@@ -87,6 +92,19 @@ def _interlocked(wall: HerringboneWall, length: float, height: float) -> Tiling:
             stones.append(tuple(numbers.setdefault(cell, len(numbers)) for cell in cells))
     corners = product(np.array(list(numbers)), np.array([along, up]))
     return Tiling(corners, stones, [0] * len(stones))
+
+
+def _columns(i: int, n: int, reach: int, axis: Sequence[float], ends: tuple[float, float, float]) -> Iterator[int]:
+    """Yield the places j of row i of the grid, at most `reach` from its origin, at which stones may begin in the wall.
+
+    n: squares of a stone; axis: direction of rows (cos, sin), of which neither is 0; ends: the least coordinate of
+    the middle of a stone and the largest ones along and up [squares].
+    """
+    (c, s), (least, right, top) = axis, ends
+    low = math.floor(max(-reach, (i * c - right) / s - 2 * n, (least - i * s) / c - 2 * n))
+    high = math.ceil(min(reach, (i * c - least) / s + 2 * n, (top - i * s) / c + 2 * n))
+    for begin in range(low + (i - low) % (2 * n) - 2 * n, high + 1, 2 * n):  # a level one, then an upright one
+        yield from (j for j in (begin, begin + 1) if low <= j <= high)
 
 
 def _rows(wall: HerringboneWall, length: float, height: float) -> Tiling:

@@ -9,6 +9,7 @@ from dem_cli.case.base import CaseModel, KeyProblem, NonNegative, Positive
 from dem_cli.core.geometry import pockets
 from dem_cli.core.geometry.polygon import rectangle
 from dem_cli.core.model.blocks import Block
+from dem_cli.input_limits import MOST_STONES
 from dem_cli.masonry.structures import tops
 from dem_cli.masonry.structures.bases import base_block
 from dem_cli.masonry.structures.openings import NARROWEST_PIECE, Opening, check_apart, check_opening
@@ -154,6 +155,9 @@ def _check_quoins(wall: PatternWall, quoins: DressedEnds) -> None:
         raise KeyProblem(message, "quoins", "length")
     if wall.outline and wall.outline.drawn.eaves == 0.0:
         raise KeyProblem(NOT_UPRIGHT, "quoins")
+    count = 2.0 * wall.extent[1] / quoins.height
+    if count > MOST_STONES:
+        raise KeyProblem(f"makes {count:.3g} stones; at most {MOST_STONES:,}", "quoins", "height")
     if wall.leaves_outline(list(wall.squared_ends.values())):
         raise KeyProblem("would reach out of the outline, or into an opening that is drawn", "quoins", "length")
     for i, opening in enumerate(wall.openings):

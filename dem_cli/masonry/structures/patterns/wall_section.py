@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from dem_cli.case.base import KeyProblem, NonNegative, Positive, RandomStructure
 from dem_cli.core.geometry.polygon import rectangle
 from dem_cli.core.model.blocks import Block
+from dem_cli.input_limits import MOST_STONES
 from dem_cli.masonry.structures.bases import base_block
 from dem_cli.masonry.structures.patterns.coursed import Size, divided
 from dem_cli.masonry.structures.patterns.drawn_once import drawn_once
@@ -56,6 +57,9 @@ class WallSection(RandomStructure):
                 message = f"a deviation of {deviation:g} is not allowed; must be at most {most:.4g}, so that "
                 raise KeyProblem(f"{message}no stone is below a quarter of the mean, {mean:g}", key)
         width, height = self.size
+        count = 2.0 * height / self.course[0]
+        if count > MOST_STONES:
+            raise KeyProblem(f"makes {count:.3g} stones; at most {MOST_STONES:,}", "course")
         least = width - 2.0 * sum(self.face)
         if least < self.cell:
             message = f"faces up to {sum(self.face):g} deep leave {max(least, 0.0):.4g} of {width:g} for a core"
@@ -82,7 +86,8 @@ def build(section: WallSection) -> list[Block]:
 
 def figures(section: WallSection) -> list[tuple[str, str]]:
     """Describe the drawn stones of the core, for `dem check`."""
-    return [("core", stone_figures(_stones(section)[1]))]
+    core = _stones(section)[1]
+    return [("core", stone_figures(core) if core.stones else "none: every course is a through-stone")]
 
 
 @drawn_once

@@ -1,29 +1,22 @@
 """Types of the keys of summary.json that reports, pictures and answers are made of.
 
 Keys that are not named here may hold anything. What a table names without a default is missing where it is not there;
-`TOGETHER` names what comes along with a key that has a value.
+`TOGETHER` names what comes along with a key that has a value, `AS_LONG` lists that are as long as another.
 """
 
 from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
 
-from dem_cli.core.records.history_rows import MONITOR_UNITS
-from dem_cli.errors import DamagedResults, dotted
-
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+LARGEST = float(np.finfo(np.float32).max)  # pictures and reports have single precision
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-LARGEST, le=LARGEST)]
 Count = Annotated[int, Field(strict=True, ge=0)]
 Maybe = Number | None
 Pair = Annotated[list[Maybe], Field(min_length=2, max_length=2)]
 Range = Annotated[list[Number], Field(min_length=2, max_length=2)]
-KINDS = {  # of errors of pydantic -> what the value is not
-    "float_type": "a number", "int_type": "a whole number", "string_type": "text", "bool_type": "true or false",
-    "list_type": "a list", "too_short": "two numbers", "too_long": "two numbers", "dict_type": "a table",
-    "model_type": "a table",
-    "finite_number": "finite", "greater_than_equal": "a count", "int_from_float": "a whole number",
-}  # fmt: skip
 
 
 class SummaryTable(BaseModel):
@@ -31,6 +24,7 @@ class SummaryTable(BaseModel):
 
     model_config = ConfigDict(extra="allow", strict=True, defer_build=True)
     TOGETHER: ClassVar[dict[str, tuple[str, ...]]] = {}
+    AS_LONG: ClassVar[dict[str, tuple[str, ...]]] = {}  # lists with an entry for each of a list, or tables of such
 
 
 class FoundPeak(SummaryTable):
@@ -126,6 +120,7 @@ class FoundSystem(SummaryTable):
 class FoundCurve(SummaryTable):
     """Table capacity_curve of a summary."""
 
+    AS_LONG = {"displacements": ("loads",)}
     displacements: list[Number]
     loads: list[Number]
     last_displacement: Number
@@ -192,6 +187,7 @@ class FoundCount(SummaryTable):
 class FoundReference(SummaryTable):
     """Table reference of a summary, or one of several."""
 
+    AS_LONG = {"displacements": ("value",)}
     value: Number | bool | str | list[Number]
     tolerance: Maybe
     passed: bool
@@ -217,7 +213,8 @@ class FoundRun(SummaryTable):
 class FoundFragility(SummaryTable):
     """Table curve of a summary of a fragility study."""
 
-    intensity: list[Number]
+    AS_LONG = {"intensity": ("share", "low", "high")}
+    intensity: Annotated[list[Number], Field(min_length=2)]
     share: list[Maybe]
     low: list[Maybe] | None = None
     high: list[Maybe] | None = None
@@ -301,6 +298,7 @@ class RunSummary(SummaryTable):
         "safety_factor": ("vary",),
         "contacts": ("joints",),
     }  # fmt: skip
+    AS_LONG = {"frequencies": ("effective_masses",), "levels": ("share",)}
     title: str
     kind: str
     status: str
@@ -361,7 +359,7 @@ class RunSummary(SummaryTable):
     seconds: Maybe = None
     frequencies: list[Number] | None = None
     highest_frequency: Maybe = None
-    total_mass: Maybe = None
+    total_mass: Annotated[float, Field(strict=True, gt=0.0, le=LARGEST)] | None = None
     effective_masses: dict[str, list[Number]] | None = None
     springs: FoundSprings | None = None
     first_frequency: FoundFirst | None = None
@@ -387,47 +385,3 @@ class RunSummary(SummaryTable):
     warnings: list[str] | None = None
     contradictions: list[str] | None = None
     skipped: list[str] | None = None
-
-
-def check_summary(found: Any) -> dict[str, Any]:
-    """Check a summary and return it. Raises DamagedResults where it is no summary of a run."""
-    if not isinstance(found, dict):
-        raise DamagedResults("summary.json is not a table")
-    try:
-        read = RunSummary.model_validate(found)
-    except ValidationError as error:
-        raise DamagedResults(_words(error, found)) from None
-    _check_together(read, ())
-    for name, table in (found.get("monitors") or {}).items():
-        if table.get("unit", "m") not in MONITOR_UNITS.values():
-            raise DamagedResults(f"summary.json: {dotted(('monitors', name, 'unit'))} is {table['unit']!r}, no unit")
-    return found
-
-
-def _words(error: ValidationError, found: Any) -> str:
-    """Describe the first validation error: its place and what is wrong."""
-    first = error.errors(include_url=False, include_input=False, include_context=False)[0]
-    path: list[str | int] = []
-    for key in first["loc"]:  # pydantic names the choice that it tried as well
-        inside = key in found if isinstance(found, dict) else isinstance(found, list) and key in range(len(found))
-        if not inside and first["type"] != "missing":
-            break
-        path.append(key)
-        found = found[key] if inside else None
-    what = f"summary.json: {dotted(tuple(path))}"
-    if first["type"] == "missing":
-        return f"{what} is missing"
-    kind = KINDS.get(first["type"])
-    return f"{what} is not {kind}" if kind and len(path) == len(first["loc"]) else f"{what} is not what it must be"
-
-
-def _check_together(table: SummaryTable, path: tuple[str | int, ...]) -> None:
-    """Raise DamagedResults where a key has a value, and its companion has none."""
-    for key, others in table.TOGETHER.items():
-        for other in others if getattr(table, key) else ():
-            if getattr(table, other) is None:
-                raise DamagedResults(f"summary.json: {dotted((*path, other))} is missing")
-    for name in type(table).model_fields:
-        value = getattr(table, name)
-        if isinstance(value, SummaryTable):
-            _check_together(value, (*path, name))
