@@ -130,3 +130,16 @@ def test_books_balance_over_an_impact():
     sim.shake(sim._still(n_steps), n_steps, sim.watch(np.array([N]), n_steps, 2))
     assert np.abs(sim.bodies.modes).max() > 0.0
     assert abs(measures.closure(sim)) < 1e-2
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_block_is_thrown_as_a_rigid_one(dimension):
+    """[[initial]] gives a velocity of blocks; strains have none. It was an internal error."""
+    sim = column(dimension, Damping())
+    rigid = sim.model.rotations.stop
+    sim.bodies.velocities[:] = 7.0
+    moves.throw(sim, np.array([N]), np.arange(1.0, rigid + 1.0))
+    assert sim.bodies.velocities[N].tolist() == [*range(1, rigid + 1)] + [0.0] * (
+        sim.bodies.velocities.shape[1] - rigid
+    )
+    assert (sim.bodies.velocities[:N] == 7.0).all()

@@ -35,8 +35,9 @@ def turn(sim: Simulation, blocks: np.ndarray, rotation: np.ndarray | float, abou
 
 
 def throw(sim: Simulation, blocks: np.ndarray, velocity: np.ndarray) -> None:
-    """Set the velocity of blocks [m/s, rad/s], (n_dof,)."""
-    sim.bodies.velocities[blocks] = velocity
+    """Set the velocity of blocks as rigid ones [m/s, rad/s]; what they may deform at as well is 0."""
+    sim.bodies.velocities[blocks] = 0.0
+    sim.bodies.velocities[blocks, : len(velocity)] = velocity
 
 
 def find_faces(sim: Simulation) -> None:
