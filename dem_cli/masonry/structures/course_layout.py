@@ -112,7 +112,7 @@ def _snapped(run: list[Piece], plan: CoursePlan) -> list[Piece]:
 
 def split(tip: Span, joints: Sequence[float], stops: Sequence[float], least: float) -> list[Span]:
     """Divide a thin leftover at the head joints of its neighbouring course; no piece shorter than `least`."""
-    places = {near(x, stops, 0.5 * least) for x in joints}
+    places = {near(x, stops, 0.5 * least) for x in joints if tip[0] < x < tip[1]}  # others do not get so far
     ends = [tip[0]]
     for x in sorted(places):
         if ends[-1] + least < x < tip[1] - least:
