@@ -107,6 +107,11 @@ REFUSED = {
         "id = 'w'\naxis = [[0.0, 0.0], [4.0, 0.0]]\ngable = { height = 1e18 }",
         "gable.height: 5e+18 blocks are too many",
     ),
+    "an outline that is flat": (
+        f"{JOINT}[[structure]]\nkind = 'voronoi-wall'\nthickness = 0.5\ncell = 0.4\n"
+        "outline.points = [[0.0, 0.0], [2.0, 0.0], [2e8, 1.2], [1.0, 1.6], [0.0, 1.2]]",
+        "its corners lie on one line but for ",
+    ),
     "quoins": (
         f"{JOINT}[[structure]]\nkind = 'voronoi-wall'\nsize = [4.0, 3e8]\nthickness = 0.5\ncell = 0.4\n"
         "quoins = { length = 0.6, height = 0.3 }",

@@ -281,6 +281,8 @@ def _elevation(loops: Sequence[tuple[str, np.ndarray]], keys: tuple[str, str]) -
     for said, loop in closed:
         places = [_onto(loop[:, axis], levels[axis], gap) - low[axis] for axis in (0, 1)]
         aligned.append((said, np.stack(places, axis=1)))
+    if not aligned[0][1].any(axis=0).all():
+        raise KeyProblem(f"{closed[0][0]}: its corners lie on one line but for {gap:.3g} m: it has no area", keys[0])
     outline, doors = _without_doors(aligned[0][1])
     openings = [*(DrawnOpening(*each) for each in aligned[1:]), *doors]
     length, height = outline.max(axis=0)
