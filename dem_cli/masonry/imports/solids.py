@@ -74,8 +74,8 @@ def solids_of(bodies: Sequence[FileBody], factor: float, how: Reading) -> tuple[
             try:
                 facets[k] = _again(each, points)
             except FileProblem as error:
-                what, how = called(bodies[owners[k] - 1], owners[k]), f"over {tolerance:.3g} m; give a smaller snap"
-                raise FileProblem(f"{what}: {error} {how}") from None
+                what, over = called(bodies[owners[k] - 1], owners[k]), f"over {tolerance:.3g} m; give a smaller snap"
+                raise FileProblem(f"{what}: {error} {over}") from None
         notes = _notes(snapped, tolerance)
     solids = []
     for number, each in zip(owners, facets, strict=True):
