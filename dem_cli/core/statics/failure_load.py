@@ -220,7 +220,7 @@ class LoadSearch:
         Else all is as it was, also where loads raised from gravity fail sooner: these are other histories then.
         small: in small steps of the load.
         """
-        answer, limits, scale, resolution = self.answer, self.answer.limits, self.sim.live_scale, self.resolution
+        answer, limits, resolution = self.answer, self.answer.limits, self.resolution
         if limits is None or answer.bound is None or not limits.slides:
             return False
         plane = self.sim.model.dimension == 2  # in space it takes as long as the path, and fails more often
@@ -232,19 +232,34 @@ class LoadSearch:
         known, rows, report = replace(answer), len(self.track.kept), dict(answer.start)
         starts = starts_by_history(limits, report, small)
         if starts and self._raised_beside(starts) and self._holds(starts[-1], self.settings.below * resolution):
-            self.plateau, low = starts[-1].load / scale, answer.carried / scale
-            load = min((1.0 + self.settings.one_step * resolution) * low, self.impossible)
-            verdict = self._settle(load)
-            if verdict.state == "failure":
-                answer.start, answer.status, answer.found = report, OK, True
-                self._note_failure(load, verdict)
-                self.track.keep("collapse")
+            answer.start = report
+            if self._fails_after(starts[-1].load, report["fails"]):
                 return True
         passes, self.plateau = answer.passes, np.inf
         vars(answer).update(vars(known) | {"passes": passes, "start": dict(self.first_start)})
         del self.track.kept[rows:]
         self.sim.restore(self.at_rest)
         return False
+
+    def _fails_after(self, held: float, fails: float) -> bool:
+        """Test whether the explicit solver fails above the last load that an implicit history carried.
+
+        held, fails: its bracket. Where that is wider than asked for the load is raised in it, trial after trial.
+        """
+        answer, scale, step = self.answer, self.sim.live_scale, self.settings.one_step * self.resolution
+        low = answer.carried / scale
+        if fails > (1.0 + self.resolution) * held:
+            self.plateau = fails / scale
+            self._raise_load(self._trials([0.5 * (low + fails / scale), fails / scale], step * low))
+            return answer.found
+        self.plateau, load = held / scale, min((1.0 + step) * low, self.impossible)
+        verdict = self._settle(load)
+        if verdict.state != "failure":
+            return False
+        answer.status, answer.found = OK, True
+        self._note_failure(load, verdict)
+        self.track.keep("collapse")
+        return True
 
     def _ends_where_the_path_does(self) -> bool:
         """Test whether the path of a large structure leads to a load that the explicit solver carries.

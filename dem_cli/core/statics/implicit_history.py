@@ -111,9 +111,11 @@ class ImplicitHistory:
     def search(self, bound: float, resolution: float, small: bool = False) -> LoadHistory | None:
         """Search for the load that fails, below a bound, to a relative width; None where it was not found.
 
-        small: in small steps of the load, which meet what larger ones step over.
+        small: in small steps of the load, which meet what larger ones step over. Where a load in the bracket stays
+        undecided the bracket may be wider than asked for.
         """
-        if not (self._stand() and self._close_in(bound, resolution, small)) or self.high is None or not self.held:
+        closed = self._stand() and self._close_in(bound, resolution, small)
+        if self.high is None or not self.held or not (closed or self.high < (1.0 + self.settings.widest) * self.low):
             return None
         return LoadHistory(self.high, self.held, self.levels)
 

@@ -148,3 +148,19 @@ def test_the_explicit_solver_shows_both_ends():
         "finished": False,
     }
     assert abs(implicit["energy_closure"]) < 1e-3
+
+
+def test_a_bracket_that_stays_wider_is_narrowed_by_the_explicit_solver(monkeypatch):
+    """As where a load between the last one held and the first that fails stays undecided: all of it was thrown away."""
+    settings = replace(DEFAULT, implicit_history=replace(DEFAULT.implicit_history, blocks=60))
+    monkeypatch.setattr(ImplicitHistory, "_narrowed", lambda self, resolution: False)
+    found = solve(CASES / "wall_2.toml", "analysis.follow=0", settings=settings)[0]
+    assert found["status"] == "ok"
+    assert found["start"]["kind"] == IMPLICIT
+    held, fails = found["start"]["load"], found["start"]["fails"]
+    assert (1.0 + 2.0 * RESOLUTION) * held < fails
+    low, high = found["failure_load_bracket"]
+    assert 0.999 * held <= low < high <= (1.0 + 1.001 * RESOLUTION) * low
+    assert high <= fails
+    assert found["proof_of_failure"]["by"] == "motion"
+    assert found["failure_load"] == pytest.approx(0.5561, rel=2.0 * RESOLUTION)  # as raised from gravity
