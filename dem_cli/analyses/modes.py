@@ -16,7 +16,6 @@ from dem_cli.core.arithmetic.functions import agreed
 from dem_cli.core.arithmetic.products import norm
 from dem_cli.core.dynamics.frequencies import Modes, highest_frequency, modes, system
 from dem_cli.core.engine import measures
-from dem_cli.core.engine.audit import unbending
 from dem_cli.core.engine.budget import Budget
 from dem_cli.core.engine.job import Outcome
 from dem_cli.core.engine.settings import DEFAULT, Settings
@@ -160,7 +159,6 @@ def _frame(sim: Simulation, shape: np.ndarray, number: int) -> Frame:
 
 
 def _doubts(job: CaseJob, found: Modes, sim: Simulation) -> None:
-    job.warnings += unbending(job.request, sim)
     tables, rigid = job.case.joints, dict(zip(sim.properties.names, sim.properties.rigid, strict=True))
     names = [name for name, table in tables.items() if rigid[name] or (table.ks == "auto" and table.kn != "auto")]
     if names:

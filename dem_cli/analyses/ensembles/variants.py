@@ -14,6 +14,7 @@ import numpy as np
 from dem_cli.core.engine.settings import DEFAULT
 from dem_cli.core.geometry.rotation import moments
 from dem_cli.core.laws.friction import FrictionJoint
+from dem_cli.core.model.first_moments import first_moments
 from dem_cli.core.model.model import Model
 
 if TYPE_CHECKING:
@@ -84,6 +85,9 @@ def other_sizes(
     dead = model.dead_loads.copy()
     dead[:, :d] -= weights  # what is left are point loads, which act where they did
     dead[:, model.rotations] -= moments(shifts, dead[:, :d])
+    at_points = model.dead_first_moments
+    if len(at_points):
+        at_points = at_points - first_moments(shifts, dead[:, :d])
     dead[:, d - 1] += factors * weights[:, -1]
     dead[:, : d - 1] += factors[:, None] * weights[:, -1:] * lean
     return model._replace(
@@ -92,5 +96,6 @@ def other_sizes(
         centroids=model.centroids + shifts,
         vertices=model.vertices - shifts[owner],
         dead_loads=dead,
+        dead_first_moments=at_points,
         following=model.following and model.following.shifted(shifts),
     )

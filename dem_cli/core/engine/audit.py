@@ -115,7 +115,8 @@ def unbending(request: SolverRequest, sim: Simulation) -> list[str]:
     compliance = block_compliance(sim.model, np.repeat(request.joints.uniform[:, None], 2, axis=1), free)
     return [
         f"blocks of uniform strain deform {times}: they do not bend, and give way too little: walls by "
-        "some 2 % at 0.1 times, 4 % at 0.4, 9 % at 3; what bends and is few blocks wide by 8, 27 and 70 %"
+        "some 2 % at 0.1 times, 4 % at 0.4, 9 % at 3; what bends and is few blocks wide by 8, 27 and 70 %, where "
+        "deformation = 'joints', the default, is right within 0.3 %"
         for times in _stiff_beside(sim, compliance, sim.settings.doubts.unbending)
     ]
 

@@ -16,7 +16,7 @@ from dem_cli.core.kernels import records as slot
 from dem_cli.core.kernels.records import Bodies, Contacts, Joints, MovingJoints
 from dem_cli.core.links.link import FIXED_POINT
 from dem_cli.core.links.matrices import softest
-from dem_cli.core.model import uniform_strain
+from dem_cli.core.model import first_moments, uniform_strain
 from dem_cli.core.model.following_loads import FollowingLoads
 from dem_cli.core.records.frames import ContactRecord, Frame, LinkPlaces, LinkRecord
 from dem_cli.core.records.history_rows import Energy
@@ -359,7 +359,18 @@ def frame_of(sim: Simulation, seen: Moment, stage: str) -> Frame:
     return Frame(
         stage, seen.steps, sim.load * sim.live_scale, seen.displacement, seen.positions, seen.orientations,
         seen.velocities, contact_record(sim, seen.contacts), seen.time, seen.stresses, seen.links,
+        first_moments_of(sim, seen),
     )  # fmt: skip
+
+
+def first_moments_of(sim: Simulation, seen: Moment) -> np.ndarray | None:
+    """Sum the first moments of loads at points, as they are now, and of ties and bars, as Frame.first_moments."""
+    dead, live = sim.dead_share, float(sim.control[slot.LIVE_FACTOR]) * sim.live_scale
+    found = first_moments.of_loads(sim.model, seen.orientations, dead, live)
+    if seen.links is None:
+        return found
+    of_links = first_moments.of_links(seen.links, seen.positions, seen.orientations)
+    return of_links if found is None else found + of_links
 
 
 def link_record(sim: Simulation) -> LinkRecord | None:

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dem_cli.core.geometry.rotation import quaternions, swept
+from dem_cli.core.geometry.rotation import quaternions, swept, unturned
 from dem_cli.core.limit.matrices import LimitStructure
+from dem_cli.core.model.first_moments import of_loads
 from dem_cli.core.model.model import Model
 from dem_cli.core.records.frames import STATES, ContactRecord, Frame
 
@@ -41,6 +42,7 @@ def frame(structure: LimitStructure, collapse: Collapse, tilting: bool = False) 
         float(np.linalg.norm(moved[:, :d], axis=1).max(initial=0.0)),
         model.centroids + moved[:, :d], quaternions(moved[:, d:]), collapse.velocities.copy(),
         _contacts(structure, collapse, moved, factor),
+        first_moments=of_loads(model, unturned(model.n_blocks, d), factor, factor * collapse.load),
     )  # fmt: skip
 
 

@@ -22,15 +22,23 @@ class FollowingLoads(NamedTuple):
         """Shift the loads to blocks whose centroids are elsewhere by so much [m], (n_blocks, d)."""
         return self._replace(arms=self.arms - shifts[self.blocks])
 
+    def now(self, orientations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Compute arms [m] and forces [N] of the loads where their blocks have turned to, (n, d) each.
+
+        orientations: of all blocks, as Bodies or Frame have them.
+        """
+        turned = turning(orientations[self.blocks])
+        return turned(self.arms), np.where(self.turning[:, None], turned(self.forces), self.forces)
+
     def change(self, orientations: np.ndarray, dead: bool) -> np.ndarray:
         """Compute the change of dead or live follower loads since the start, about the centroids [N, N m],
         (n_blocks, n_dof).
 
         orientations: of all blocks, as Bodies has them.
         """
-        blocks, arms, forces, _, turns = (values[self.dead == dead] for values in self)
-        turned = turning(orientations[blocks])
-        moved, now = turned(arms), np.where(turns[:, None], turned(forces), forces)
+        acting = FollowingLoads(*(values[self.dead == dead] for values in self))
+        blocks, arms, forces = acting.blocks, acting.arms, acting.forces
+        moved, now = acting.now(orientations)
         more = np.column_stack([now - forces, moments(moved, now) - moments(arms, forces)])
         total = np.zeros((len(orientations), more.shape[1]))
         np.add.at(total, blocks, more)

@@ -31,6 +31,7 @@ NO_MODES = np.zeros((0, 0))
 MOTIONS = {2: ("x", "y", "rotation"), 3: ("x", "y", "z", "rotation_x", "rotation_y", "rotation_z")}  # of a block
 NO_RESTRAINTS = np.zeros((0, 0), bool)
 NO_PIECES = NO_COURSES = np.zeros((0, 2), np.int64)
+NO_FIRST_MOMENTS = np.zeros((0, 0))
 NO_SHAPES, NO_STRAINS = np.zeros((0, 6, 2, 6)), np.zeros(0)
 
 
@@ -68,6 +69,9 @@ class ModelArrays(NamedTuple):
     imposed_strains: np.ndarray = NO_STRAINS  # in all directions, if nothing holds the block; part of the dead loads of
     # modes as well, (n_blocks,)
     mode_shapes: np.ndarray = NO_SHAPES  # of quadratic modes (model/quadratic_modes.py), (n_blocks, 6, 2, 6)
+    # Of structures with loads at points alone, else empty (model/first_moments.py), (n_blocks, 3 or 6):
+    dead_first_moments: np.ndarray = NO_FIRST_MOMENTS  # of dead loads at points about the centroid [N m]
+    live_first_moments: np.ndarray = NO_FIRST_MOMENTS  # the same of live loads [N m]
     # Of structures with restraints alone, else empty:
     restrained: np.ndarray = NO_RESTRAINTS  # motions of blocks that are held, (n_blocks, d + r) bool
     # Of stones that can crack alone, else empty:
@@ -86,6 +90,8 @@ OF_MODES = (  # empty where blocks are rigid
 )  # fmt: skip
 WHERE_ASKED_FOR = (
     *OF_MODES,
+    "dead_first_moments",
+    "live_first_moments",
     "restrained",
     "pieces",
     "courses",
@@ -266,6 +272,8 @@ class Model(ModelArrays):
             mode_stiffness=NO_MODES,
             dead_mode_loads=NO_MODES,
             live_mode_loads=NO_MODES,
+            dead_first_moments=NO_FIRST_MOMENTS,
+            live_first_moments=NO_FIRST_MOMENTS,
             restrained=NO_RESTRAINTS,
             pieces=NO_PIECES,
             courses=NO_COURSES,

@@ -23,6 +23,7 @@ _SPATIAL = np.array(
         [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
     ]
 )
+_ORDER = {2: ([0, 1, 0], [0, 1, 1]), 3: ([0, 1, 2, 1, 2, 0], [0, 1, 2, 2, 0, 1])}  # of components, by dimension
 BASIS = {2: _PLANAR, 3: _SPATIAL}  # B_k by dimension, (m, d, d)
 
 
@@ -76,8 +77,17 @@ def stresses(modes: np.ndarray, stiffness: np.ndarray, volumes: np.ndarray, radi
 
 def components(stresses: np.ndarray) -> np.ndarray:
     """Return components xx, yy, xy, in space xx, yy, zz, yz, zx, xy of symmetric tensors (n, d, d), (n, 3 or 6)."""
-    rows, columns = ([0, 1, 0], [0, 1, 1]) if stresses.shape[1] == 2 else ([0, 1, 2, 1, 2, 0], [0, 1, 2, 2, 0, 1])
+    rows, columns = _ORDER[stresses.shape[1]]
     return stresses[:, rows, columns]
+
+
+def tensors(components: np.ndarray) -> np.ndarray:
+    """Return symmetric tensors (n, d, d) of components as `components` orders them, (n, 3 or 6)."""
+    d = 2 if components.shape[1] == 3 else 3
+    found = np.empty((len(components), d, d))
+    for places in (_ORDER[d], _ORDER[d][::-1]):
+        found[:, places[0], places[1]] = components
+    return found
 
 
 def gradients_of(modes: np.ndarray, radii: np.ndarray, turns: np.ndarray) -> np.ndarray:

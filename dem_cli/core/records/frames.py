@@ -26,6 +26,7 @@ STAGES = (
     "mode",
 )  # meaning of Frame.stage and HistoryRow.stage, in their order
 FRAME_ARRAYS = ("positions", "orientations", "velocities")  # fields of Frame that each block has a row of
+OPTIONAL_ARRAYS = ("stresses", "first_moments")  # the same, where the structure has any
 
 
 class ContactRecord(NamedTuple):
@@ -81,6 +82,27 @@ class LinkRecord(NamedTuple):
         """Points of each link in a frame [m], (n, d) each."""
         points = self.places.at(frame.positions, frame.orientations)
         return [points[a:b] for a, b in zip(self.places.starts, self.places.starts[1:])]
+
+    def on_blocks(self, positions: np.ndarray, orientations: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Compute the forces of ties and bars on the blocks of their points.
+
+        Bars hand over what their force changes by from point to point. Returns blocks (n,), −1: none, points [m] and
+        forces [N], (n, d) each; arguments as in Frame.
+        """
+        points, starts = self.places.at(positions, orientations), self.places.starts
+        forces = np.zeros_like(points)
+        for begin, end in zip(starts[:-1].tolist(), starts[1:].tolist()):
+            here, blocks, axial = points[begin:end], self.places.blocks[begin:end], self.forces[begin:end]
+            first, last = np.arange(end - begin - 1), np.arange(1, end - begin)
+            if end - begin > 2:  # a bar crosses a joint from the node before it to that behind
+                crosses = (blocks[1:] != blocks[:-1]).astype(np.int64)
+                first, last = np.maximum(first - crosses, 0), np.minimum(last + crosses, end - begin - 1)
+            along = here[last] - here[first]
+            lengths = np.sqrt((along * along).sum(axis=1))
+            pull = (0.5 * (axial[1:] + axial[:-1]) / np.where(lengths > 0.0, lengths, 1.0))[:, None] * along
+            forces[begin : end - 1] += pull
+            forces[begin + 1 : end] -= pull
+        return self.places.blocks, points, forces
 
     def largest(self) -> np.ndarray:
         """Largest axial force of each link by amount, with its sign [N], (n_links,)."""
@@ -140,6 +162,9 @@ class Frame(NamedTuple):
     # yz, zx, xy, (n_blocks, 3 or 6); None: all blocks are rigid
     stresses: np.ndarray | None = None
     links: LinkRecord | None = None  # ties and bars; None: there are none
+    # Symmetric parts of Σ f ⊗ x of loads at points, ties and bars about the centroids [N m]: xx, yy, xy, in 3D as
+    # stresses, (n_blocks, 3 or 6); None: there are none
+    first_moments: np.ndarray | None = None
 
     def moved(self, motion: np.ndarray) -> Frame:
         """Move and turn the blocks along the axes of the world [m, rad], (n_blocks, n_dof)."""
@@ -160,6 +185,7 @@ class FrameStack(NamedTuple):
     velocities: np.ndarray  # (n_frames · n_blocks, n_dof)
     contacts: ContactRecord  # of all frames; blocks by their rows here
     stresses: np.ndarray | None  # (n_frames · n_blocks, 3 or 6)
+    first_moments: np.ndarray | None  # (n_frames · n_blocks, 3 or 6)
 
     @property
     def n_points(self) -> np.ndarray:
@@ -187,7 +213,12 @@ def stacked(frames: Sequence[Frame]) -> FrameStack:
     contacts = ContactRecord(*map(np.concatenate, zip(*records, strict=True)))
     counts = [len(record.joint) for record in records]
     through = contacts.blocks + np.repeat(n_blocks * np.arange(len(frames)), counts)[:, np.newaxis]
-    found = [frame.stresses for frame in frames if frame.stresses is not None]
-    stresses = np.concatenate(found) if found else None
     contacts = contacts._replace(blocks=through)
-    return FrameStack(tuple(frames), positions, orientations, velocities, contacts, stresses)
+    stresses, moments = (_joined([getattr(frame, name) for frame in frames]) for name in OPTIONAL_ARRAYS)
+    return FrameStack(tuple(frames), positions, orientations, velocities, contacts, stresses, moments)
+
+
+def _joined(parts: Sequence[np.ndarray | None]) -> np.ndarray | None:
+    """Concatenate arrays of frames; None where these have none."""
+    found = [part for part in parts if part is not None]
+    return np.concatenate(found) if found else None

@@ -13,6 +13,7 @@ from dem_cli.core.arithmetic.products import product
 from dem_cli.core.geometry.rotation import moments
 from dem_cli.core.model.blocks import Block, corners_of
 from dem_cli.core.model.bodies import BodyArrays, bodies_of
+from dem_cli.core.model.first_moments import summed
 from dem_cli.core.model.following_loads import FollowingLoads
 from dem_cli.core.model.model import NO_COURSES, NO_PIECES, Model
 from dem_cli.core.model.quadratic_modes import quadratic_loads, quadratic_modes
@@ -272,6 +273,10 @@ def _with_loads(case: Case, model: Model, loads: Sequence[AppliedLoad]) -> Model
     model = model._replace(
         dead_loads=dead_loads, live_loads=np.where(free, live, 0.0), following=_following(model, dead, applied)
     )
+    if loads:
+        model = model._replace(
+            dead_first_moments=_first_moments(model, dead), live_first_moments=_first_moments(model, applied)
+        )
     if not model.n_modes:
         return model
     model = model._replace(dead_mode_loads=_on_modes(model, dead), live_mode_loads=_on_modes(model, applied))
@@ -340,6 +345,15 @@ def _resultants(model: Model, loads: Sequence[AppliedLoad]) -> np.ndarray:
     for load in loads:
         arms = load.points - model.centroids[load.blocks]
         np.add.at(total, load.blocks, np.column_stack([load.forces, moments(arms, load.forces)]))
+    return total
+
+
+def _first_moments(model: Model, loads: Sequence[AppliedLoad]) -> np.ndarray:
+    """Sum the first moments of applied loads about the centroids [N m], (n_blocks, 3 or 6)."""
+    total = np.zeros((model.n_blocks, 3 * (model.dimension - 1)))
+    for load in loads:
+        arms = load.points - model.centroids[load.blocks]
+        total += summed(model.n_blocks, load.blocks, arms, load.forces)
     return total
 
 

@@ -1,7 +1,7 @@
-"""Mean stress of blocks from the forces at their contact points, and its principal values.
+"""Mean stress of blocks from the forces on them, and its principal values.
 
-In equilibrium V σ = Σ f ⊗ x over all forces on the surface of a block (Love 1927); weight acts evenly and adds nothing
-about the centroid. Loads at points of a block are not among contact forces: a block that has any lacks their share.
+In equilibrium V σ = Σ f ⊗ x over all forces on a block: at contact points, loads at points, ties and bars (Love 1927).
+Weight acts evenly and adds nothing about the centroid. Of a block with bars it is the mean of its stone.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import numpy as np
 from dem_cli.core.arithmetic.small_matrices import diagonalised
 from dem_cli.core.model.copies import repeated
 from dem_cli.core.model.model import Model
+from dem_cli.core.model.uniform_strain import tensors
 from dem_cli.core.records.frames import Frame, FrameStack
 
 
@@ -27,6 +28,8 @@ def mean_stresses(model: Model, frame: Frame | FrameStack) -> np.ndarray:
         dyads = sign * forces[:, :, None] * (contacts.points - frame.positions[blocks])[:, None, :]
         for i, j in np.ndindex(d, d):
             total[:, i, j] += np.bincount(blocks, dyads[:, i, j], n)
+    if frame.first_moments is not None:
+        total += tensors(frame.first_moments)
     total *= repeated(0.5 / (model.shapes.volumes * model.thickness), copies)[:, None, None]
     total[repeated(model.fixed, copies)] = 0.0
     return total + total.swapaxes(1, 2)

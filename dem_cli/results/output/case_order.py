@@ -62,7 +62,8 @@ class CaseOrder:
         frames = tuple(
             frame._replace(
                 **{name: getattr(frame, name)[self.order] for name in FRAME_ARRAYS},
-                stresses=None if frame.stresses is None else frame.stresses[self.order],
+                stresses=_picked(frame.stresses, self.order),
+                first_moments=_picked(frame.first_moments, self.order),
                 contacts=frame.contacts._replace(blocks=self.places[frame.contacts.blocks]),
                 links=frame.links and self.links(frame.links),
             )
@@ -71,6 +72,12 @@ class CaseOrder:
         return stack._replace(
             frames=frames,
             contacts=stack.contacts._replace(blocks=blocks - blocks % n_blocks + self.places[blocks % n_blocks]),
-            stresses=None if stack.stresses is None else stack.stresses[rows],
+            stresses=_picked(stack.stresses, rows),
+            first_moments=_picked(stack.first_moments, rows),
             **arrays,
         )
+
+
+def _picked(rows: np.ndarray | None, order: np.ndarray) -> np.ndarray | None:
+    """Reorder rows of blocks; None where there are none."""
+    return None if rows is None else rows[order]

@@ -88,10 +88,11 @@ def _generalised(meaning: str, linear: str, angular: str, axes: tuple[str, ...])
     return Described(meaning, (linear, linear, angular), axes, _MOVED, space)
 
 
-def _of_stress(meaning: str, axes: tuple[str, ...] = ("frame", "block", "component")) -> Described:
-    """Describe the stress components of blocks."""
-    space = Described(meaning, "Pa", axes, ("xx", "yy", "zz", "yz", "zx", "xy"))
-    return Described(meaning, "Pa", axes, ("xx", "yy", "xy"), space, optional=True)
+def _of_stress(meaning: str, unit: str = "Pa") -> Described:
+    """Describe the components of symmetric tensors of blocks, such as stresses."""
+    axes = ("frame", "block", "component")
+    space = Described(meaning, unit, axes, ("xx", "yy", "zz", "yz", "zx", "xy"))
+    return Described(meaning, unit, axes, ("xx", "yy", "xy"), space, optional=True)
 
 
 _BENDING = tuple(f"bending {k}" for k in range(1, 7))
@@ -229,6 +230,10 @@ FRAMES = {
         ("frame", "block", "component"),
     ),
     "stresses": _of_stress("stress of each block, in its own axes, tension positive; where blocks deform alone"),
+    "first_moments": _of_stress(
+        "symmetric part of the sum of f ⊗ x of loads at points, ties and bars about the centroid of their block; where "
+        "there are any alone", "N m",
+    ),
     "step": Described("solver steps so far", PURE, ("frame",), kind=WHOLE),
     "load": Described("load multiplier λ", PURE, ("frame",)),
     "displacement": Described("control displacement: the largest of any block since the start", "m", ("frame",)),

@@ -15,6 +15,7 @@ import numpy as np
 from dem_cli.core.model.model import Model
 from dem_cli.core.records.frames import (
     FRAME_ARRAYS,
+    OPTIONAL_ARRAYS,
     STAGES,
     ContactRecord,
     Frame,
@@ -35,7 +36,7 @@ from dem_cli.results.output.sweep_files import RUNS
 
 Stored: TypeAlias = "np.ndarray | LaterArray"  # an array in memory, or one that is read in parts
 
-LAZY = (*FRAME_ARRAYS, "stresses")  # of frames: read on access
+LAZY = (*FRAME_ARRAYS, *OPTIONAL_ARRAYS)  # of frames: read on access
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ class Frames(Sequence[Frame]):
             velocities=columns["velocities"][i],
             contacts=contacts,
             time=float(columns["time"][i]),
-            stresses=columns["stresses"][i] if "stresses" in columns else None,
+            **{name: columns[name][i] if name in columns else None for name in OPTIONAL_ARRAYS},
             links=self._links and self._links._replace(forces=self._links.forces[i]),
         )
 
@@ -242,7 +243,7 @@ def _read_frames(arrays: StoredArrays, lazy: Path | None) -> Frames:
     if "n_contacts" not in group:
         return Frames({}, {})
     n_frames = len(group["n_contacts"])
-    names = (*FRAME_SCALARS, *FRAME_ARRAYS, "stresses", "stage", "n_contacts")
+    names = (*FRAME_SCALARS, *FRAME_ARRAYS, *OPTIONAL_ARRAYS, "stage", "n_contacts")
 
     def held(path: str, later: bool, rows: int | None = None) -> Stored:
         return LaterArray(arrays, path, lazy) if lazy is not None and later else arrays.array(path, rows)

@@ -36,7 +36,9 @@ from dem_cli.results.output.layout import (
 
 FRAMES_AT_ONCE = 8  # that space is made for: few are kept
 _TEXT = h5py.string_dtype()
-_UNSAID = ("aliases", "selections", "links", "link_names", "following", "ranks")  # of a model: the case file says them
+_UNSAID = (  # of a model: the case file says them
+    "aliases", "selections", "links", "link_names", "following", "ranks", "dead_first_moments", "live_first_moments"
+)  # fmt: skip
 _MOST_KEPT = 4
 _images: dict[Any, bytes] = {}
 

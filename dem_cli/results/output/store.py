@@ -16,7 +16,7 @@ import numpy as np
 from dem_cli.analysis_kinds import kind_of
 from dem_cli.core.model.model import Model
 from dem_cli.core.records.certificate_record import Certificates
-from dem_cli.core.records.frames import FRAME_ARRAYS, STAGES, Frame, FrameStack, LinkRecord, stacked
+from dem_cli.core.records.frames import FRAME_ARRAYS, OPTIONAL_ARRAYS, STAGES, Frame, FrameStack, LinkRecord, stacked
 from dem_cli.core.records.history_rows import Energy, HistoryRow, RunRow, Samples
 from dem_cli.results.output.case_order import CaseOrder
 from dem_cli.results.output.described_dataset import store_described
@@ -283,8 +283,9 @@ class ResultWriter:
             contacts.append(name, values)
         for name in FRAME_ARRAYS:
             frames.append(name, _by_frame(getattr(stack, name), n))
-        if stack.stresses is not None:
-            frames.append("stresses", _by_frame(stack.stresses, n))
+        for name in OPTIONAL_ARRAYS:
+            if (values := getattr(stack, name)) is not None:
+                frames.append(name, _by_frame(values, n))
         if self._links is not None:
             forces = [frame.links.forces for frame in stack.frames if frame.links is not None]
             self._links.append("forces", np.array(forces))

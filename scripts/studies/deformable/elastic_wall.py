@@ -42,20 +42,21 @@ def compliance(loaded: LoadedCase) -> float:
     model = api.build_model(loaded)
     properties, bodies = joint_properties(solver_request(loaded.case), model), bodies_at_rest(model)
     joints = joints_of_start(model, bodies, properties, smallest_edge(model)).joints
-    rows, n_dof = relative_motion(joints, 2), model.dead_loads.shape[1]
+    rows, d, n_dof = relative_motion(joints, model.dimension), model.dimension, model.dead_loads.shape[1]
     columns, total = free_columns(model, joints), n_dof * int((~model.fixed).sum())
     if model.n_modes:  # behind all motions of rigid blocks
         rows = np.concatenate([rows, strain_motion(model, joints, bodies)], axis=3)
         first = np.where(columns[:, :, :1] < 0, -1, total + columns[:, :, :1] // n_dof * model.n_modes)
         columns = np.concatenate([columns, np.where(first < 0, -1, first + np.arange(model.n_modes))], axis=2)
     at = np.broadcast_to(columns[:, None], rows.shape)
-    places = np.broadcast_to(np.arange(rows.shape[0] * 2).reshape(-1, 2, 1, 1), rows.shape)
+    places = np.broadcast_to(np.arange(rows.shape[0] * d).reshape(-1, d, 1, 1), rows.shape)
     used = at >= 0
     stiffness = model.mode_stiffness[~model.fixed].ravel() if model.n_modes else np.zeros(0)
-    motion = coo_array((rows[used], (places[used], at[used])), shape=(2 * len(rows), total + len(stiffness))).tocsr()
-    springs = diags_array(np.column_stack([joints.kn, joints.ks]).ravel())
+    motion = coo_array((rows[used], (places[used], at[used])), shape=(d * len(rows), total + len(stiffness))).tocsr()
+    springs = diags_array(np.column_stack([joints.kn, *[joints.ks] * (d - 1)]).ravel())
     inside = diags_array(np.concatenate([np.zeros(total), stiffness]))
-    forces = np.concatenate([model.live_loads[~model.fixed].ravel(), np.zeros(len(stiffness))])
+    on_modes = model.live_mode_loads[~model.fixed].ravel() if model.n_modes else stiffness
+    forces = np.concatenate([model.live_loads[~model.fixed].ravel(), on_modes])
     return float(spsolve((motion.T @ springs @ motion + inside).tocsc(), forces) @ forces)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dem_cli.results.output.layout import CONTACTS, FRAMES, JOINT_PLACES, JOINT_STATES, TURNED, Described
 
-_MEAN_STRESS = "mean stress of the block by the forces at its contact points alone, tension positive, 0 if it is fixed"
+_MEAN_STRESS = "mean stress of the block by all forces on it, tension positive, 0 if it is fixed"
 BLOCK_FIELDS = {
     "PointData/displacement": Described("displacement of a corner since the start", "m"),
     "PointData/velocity": Described("velocity of a corner: m/s in a time history, else per solver step", "m/s"),
