@@ -18,6 +18,7 @@ from dem_cli.core.arithmetic.small_matrices import root
 from dem_cli.core.links.bar_forces import make_bar_forces
 from dem_cli.core.links.chain import Chain
 from dem_cli.core.links.drawn_bar import DrawnBar, Reinforcement, elements_of, nodes_of
+from dem_cli.core.links.kinks import Kinks, kinks_of
 from dem_cli.core.links.link import FORCE, N_STATE, PLASTIC, STRETCH, Link, LinkEnds, LinkReading, Outline, Springs
 from dem_cli.core.links.spans import Spans, spans
 
@@ -33,16 +34,17 @@ class Bars(NamedTuple):
     """
 
     blocks: np.ndarray  # either side of the joints that bars cross, (n_joints, 2) int64
-    arms: np.ndarray  # of the nodes beside these from the centroids, undeformed [m], (n_joints, 2·d)
-    axes: np.ndarray  # unit, from node to node, at the start, (n_joints, d)
+    arms: np.ndarray  # of the ends of kinks beside these (links/kinks.py) from the centroids, undeformed [m],
+    # (n_joints, 2·d)
+    axes: np.ndarray  # unit, from end to end, at the start, (n_joints, d)
     starts: np.ndarray  # centroids of both blocks at the start [m], (n_joints, 2·d)
-    lengths: np.ndarray  # from node to node at the start [m], (n_joints,)
+    lengths: np.ndarray  # from end to end at the start [m], (n_joints,)
     along: np.ndarray  # unit, directions of the bar at both nodes, undeformed, (n_joints, 2·d)
     first: np.ndarray  # first node of each bar, and how many there are, (n_bars + 1,) int64
     crossing: np.ndarray  # joint that an element crosses, −1: none, (n_elements,) int64
     stiffness: np.ndarray  # of the springs [N/m], (m,)
     limits: np.ndarray  # their largest force [N], (m,)
-    state: np.ndarray  # plastic elongation, elongation [m] (of bonds: slip; of dowels: N/kd l), force [N], (m, 3)
+    state: np.ndarray  # plastic elongation, elongation [m] (of bonds: slip; of dowels: N over their stiffness), force [N], (m, 3)
     node_blocks: np.ndarray  # block in which each node lies, (n,) int64
     node_arms: np.ndarray  # nodes from its centroid [m], (n, d)
     tips: np.ndarray  # both ends of each bar from the centroids of their blocks [m], (n_bars, 2, d)
@@ -77,7 +79,7 @@ class Bars(NamedTuple):
 
     @property
     def spans(self) -> Spans:
-        """Spans of bars across the joints, from node to node where these have slipped to."""
+        """Spans of bars across the joints, from end to end of the kinks, as far as the nodes there have slipped."""
         n_joints, d = self.axes.shape
         right = self.joints - np.searchsorted(self.first[1:] + np.arange(1, self.n_drawn + 1), self.joints, "right")
         slips = self.state[np.column_stack([right - 1, right]), STRETCH]
@@ -315,24 +317,25 @@ def bars(tables: Sequence[Reinforcement], drawn: Sequence[DrawnBar], centroids: 
         )
     )  # fmt: skip
     elements = [elements_of(bar, nodes) for bar, nodes in zip(drawn, cut, strict=True)]
-    right, crossing, axial, n_joints = [], [], [np.zeros(0)], 0
-    for begin, (stiffness, crosses) in zip(first.tolist(), elements):
+    right, crossing, axial, kinks, n_joints = [], [], [np.zeros(0)], [Kinks(np.zeros((0, 2, d)), np.zeros((0, 2)))], 0
+    for bar, nodes, begin, (stiffness, crosses) in zip(drawn, cut, first.tolist(), elements):
         part = np.full(len(crosses), -1, np.int64)
         part[crosses] = n_joints + np.arange(crosses.sum())
         n_joints += int(crosses.sum())
         crossing.append(part)
         right.append(begin + np.flatnonzero(crosses))
         axial.append(stiffness)
+        kinks.append(kinks_of(bar, nodes, np.flatnonzero(crosses)))
     behind = np.concatenate([np.zeros(0, np.int64), *right])
     pairs = np.column_stack([behind - 1, behind])
-    held = spans([LinkEnds((int(a), int(b)), points) for (a, b), points in zip(blocks[pairs], arms[pairs])], centroids)
+    kink_arms, dowels = (np.concatenate(parts) for parts in zip(*kinks))
+    held = spans([LinkEnds((int(a), int(b)), ends) for (a, b), ends in zip(blocks[pairs], kink_arms)], centroids)
     profiles = [bar.profile for bar, nodes in zip(drawn, cut, strict=True) for _ in nodes.blocks]
     bond = np.array([p.bond_stiffness for p in profiles]) * reach
     strength = np.array([np.inf if p.bond_strength is None else p.bond_strength for p in profiles]) * reach
-    dowels = (np.array([p.dowel_stiffness or p.bond_stiffness for p in profiles]) * reach)[pairs].ravel()
     yields = [np.full(len(part), bar.profile.largest) for bar, part in zip(drawn, crossing, strict=True)]
-    stiffness = np.concatenate([bond, *axial, dowels])
-    limits = np.concatenate([strength, *yields, np.full(len(dowels), np.inf)])
+    stiffness = np.concatenate([bond, *axial, dowels.ravel()])
+    limits = np.concatenate([strength, *yields, np.full(dowels.size, np.inf)])
     n, m, n_elements = len(blocks), len(stiffness), len(blocks) + len(drawn)
     numbers = np.concatenate([np.zeros(0, np.int64), *crossing])
     along_pairs = along[pairs].reshape(-1, 2, d)

@@ -218,8 +218,8 @@ def test_springs_are_the_stiffness_of_a_straight_bar(dimension):
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_geometry_of_the_start_is_the_limit_of_small_motion(dimension):
-    motion, d = shift(dimension, 1e-7), dimension
-    (links, start), (others, _) = (crooked(dimension, dowel_stiffness=1e14) for _ in range(2))
+    motion, d = shift(dimension, 1e-11), dimension  # small beside kinks, which are short in such hard stone
+    (links, start), (others, _) = (crooked(dimension, dowel_stiffness=1e17) for _ in range(2))
     large = forces_at(links, moved(start, motion))
     small = Placed(start.positions + motion[:, :d], motion[:, d:], start.turns, np.zeros_like(start.forces))
     assert forces_at(others, small, moves=False) == pytest.approx(large, abs=1e-4 * np.abs(large).max())
@@ -277,3 +277,33 @@ def test_wrong_bars(name):
     keys, said = WRONG[name]
     with pytest.raises(ValueError, match=said):
         table_of(Reinforcement).model_validate({"bar": "rebar", "path": [[0.0, 0.0], [1.0, 0.0]], **keys})
+
+
+def slid(element: float, opening: float, slips, **more) -> np.ndarray:
+    """Force along a joint that is open by so much, at each slip of its second block, (n_slips,)."""
+    bar, bodies = straight(element=element, **more)
+    opened(bar, bodies, np.linspace(0.0, opening, 21)[1:], moves=True)
+    found = []
+    for slip in slips:
+        bodies.positions[1, 1] = slip
+        found.append(-forces_at((bar,), bodies)[1, 1])
+    return np.array(found)
+
+
+def test_a_kink_holds_a_joint_that_slides_whatever_the_length_of_elements():
+    """Within 2 % of the largest force, up to slips that are as long as the kink."""
+    slips = np.linspace(0.0, 0.01, 41)[1:]
+    *longer, shortest = (slid(element, 0.0, slips, yield_stress=4e8) for element in (0.04, 0.02, 0.01))
+    assert shortest.max() > 2e4
+    for found in longer:
+        assert np.abs(found - shortest).max() < 0.02 * shortest.max()
+
+
+@pytest.mark.parametrize("bed", [1e7, 1e8, 1e9])
+def test_a_kink_is_that_of_a_string_on_an_elastic_bed(bed):
+    """A bar that yields, across a joint that slides by s, little beside Λ = √(H/kd): H s/2Λ."""
+    force = 1e8 * 1.13e-4
+    spread = math.sqrt(force / bed)
+    slips = np.array([0.01, 0.02]) * spread
+    found = slid(0.02, 2e-4, slips, yield_stress=1e8, bond_strength=None, dowel_stiffness=bed)
+    assert found == pytest.approx(force * slips / (2.0 * spread), rel=0.01)
