@@ -286,6 +286,6 @@ def _bound_there(job: CaseJob, sim: Simulation, displacement: float, sense: floa
         model = sim.model._replace(live_loads=sense * sim.model.live_loads)
         return load_of_points(model, sim.joints, sim.measured().gaps <= 0.0, law, settings).upper
     dead, live = sim.present_loads()
-    model = sim.model._replace(dead_loads=dead, live_loads=sense * live)
+    model = sim.model._replace(dead_loads=dead, live_loads=sense * live, links=sim.links)
     touch = 2.0 * measures.largest_overlap(sim), min(WIDEST * sim.smallest, 10.0 * displacement)
     return load_where_it_rests(model, sim.properties, law, sim.bodies, touch, settings).upper

@@ -269,8 +269,6 @@ def _beside(case: Case, sim: Simulation) -> Rows:
         return [("beside it", softer)] if softer else []
     if sim.law.bonded or sim.properties.rough or DEFAULT.limit.too_large(blocks, d):
         return []
-    if any(link.only_pulling() is None for link in sim.links):
-        return []
     said = "the path of joints that do not dilate where limit analysis leaves the load open"
     if d == 2 and blocks >= DEFAULT.implicit_history.blocks and not case.analysis.step:
         said = "where friction takes part in the bound: an implicit history from gravity to failure"

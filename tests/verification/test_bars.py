@@ -108,3 +108,18 @@ def test_a_bar_across_a_bed_that_slides():
         assert summary["limit_analysis"]["associated"] == pytest.approx(0.3 * (1 + strength / weight), rel=1e-5)
         (said,) = [text for text in summary["warnings"] if "ties or bars may hold more" in text]
         assert "0.36116" in said
+
+
+def test_the_bound_where_a_block_has_slid_knows_the_kink_of_its_bar():
+    """A block pushed along a bed that a bar crosses carries what the kink holds, which the start cannot, and says so."""
+    rod = ROD | {"yield_stress": 4e8, "bond_strength": 4e4}
+    summary, _ = solve(tables(
+        block("floor", rectangle(-1, -1, 2, 0), fixed=True), block("b", rectangle(0, 0, 1, 1)), friction=0.6,
+        bars={"rod": rod}, reinforcement=[{"bar": "rod", "path": [[0.5, -0.9], [0.5, 0.9]], "element": 0.04}],
+        analysis={"kind": "pushover", "kinematics": "large"},
+    ))  # fmt: skip
+    above = summary["above_the_bound"]
+    assert summary["status"] == "ok"
+    assert above["explained"]
+    assert summary["failure_load"] > 1.5 * summary["limit_analysis"]["associated"]
+    assert not any("do not trust" in line for line in summary["warnings"])

@@ -179,12 +179,49 @@ def test_the_path_ends_where_ties_yield():
     assert path.load == pytest.approx(solved(arch(1.5e4)).associated.multiplier, rel=1e-4)
 
 
-def test_the_path_says_what_it_does_not_know_of_ties():
-    case = tied_stack(2)
-    case["tie"][0]["compression"] = True
+def box(name: str, dimension: int, low: tuple[float, float], high: tuple[float, float], **more) -> dict:
+    """A block 1 m deep, in 2D or 3D."""
+    return block(name, rectangle(*low, *high), **more) if dimension == 2 else prism(name, low, high, **more)
+
+
+def across(dimension: int, x: float, z: float) -> list[float]:
+    return [x, z] if dimension == 2 else [x, 0.0, z]
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize(("side", "held"), [(-1.0, True), (3.0, True), (3.0, False)])
+def test_the_path_knows_rods_that_also_push(dimension, side, held):
+    """A block is pushed along its bed by λ W; a rod before or behind it holds its yield force, a tie before it none."""
+    blocks = box("floor", dimension, (-5, -1), (5, 0), fixed=True), box("b", dimension, (0, 0), (2, 0.5))
+    at = across(dimension, 0.0 if side < 0.0 else 2.0, 0.05)
+    rod = {"ends": [at, across(dimension, side, 0.05)], "block": "b", "anchored": True, "stiffness": 1e7}
+    rod |= {"yield_force": 3000.0, "prestress": 500.0, "compression": held}
+    case = tables(*blocks, friction=0.5, dimension=dimension, tie=[rod], analysis={"kind": "pushover"})
     found = solved(case, associated_only=False)
-    assert found.non_associated is None
-    assert "only those that pull" in found.no_path
+    weight = 2000.0 * 9.81 * 2.0 * 0.5
+    expected = 0.5 + (3000.0 / weight if held or side < 0.0 else 0.0)
+    assert found.non_associated.finished
+    assert found.non_associated.load == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("lean", [0.0, 0.3, -0.3])
+def test_the_path_knows_bars(dimension, lean):
+    """A block slides on a bed that a bar crosses, of force F and the angle θ to its normal: μ (W + F cos θ) + F sin θ.
+
+    F is 0 where the bar is square to the bed, which does not stretch it. One that leans against the push is pressed later,
+    and lifts the block: the load is highest before.
+    """
+    blocks = box("floor", dimension, (-5, -1), (5, 0), fixed=True), box("b", dimension, (0, 0), (2, 0.5))
+    path = [across(dimension, 1.0 + lean * z, z) for z in (-0.9, 0.45)]
+    bars = {"bar": {"area": 1e-4, "young": 2e11, "yield_stress": 4e7, "bond_stiffness": 1e9}}
+    case = tables(*blocks, friction=0.5, dimension=dimension, bars=bars, analysis={"kind": "pushover"})
+    found = solved(case | {"reinforcement": [{"bar": "bar", "path": path}]}, associated_only=False)
+    weight, force = 2000.0 * 9.81 * 2.0 * 0.5, 4000.0 * (lean > 0.0)
+    pull = force * np.array([math.cos(math.atan(lean)), math.sin(math.atan(lean))])
+    assert found.non_associated.finished
+    expected = 0.5 + (0.5 * pull[0] + pull[1]) / weight
+    assert found.non_associated.load == pytest.approx(expected, rel=1e-3)  # the bar takes some of the weight
 
 
 def test_states_of_the_path_are_held_with_their_ties():

@@ -109,7 +109,7 @@ def _carries(case: Case, model: Model, moved: Simulation | None, near: float | N
     structure = (
         start_structure(model, properties, law)
         if moved is None or near is None
-        else start_structure(model, properties, law, moved.bodies, near)
+        else start_structure(model._replace(links=moved.links), properties, law, moved.bodies, near)
     )
     if not structure.dead.any():
         return True  # nothing to carry

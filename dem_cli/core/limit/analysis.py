@@ -15,7 +15,7 @@ from dem_cli.core.contact.start import TOUCHING_GAP, bodies_at_rest, joints_of_s
 from dem_cli.core.laws.law import Law
 from dem_cli.core.limit.associated import FALLS, LOCKED, OK, LimitLoad, associated_limit, slides, work_of_friction
 from dem_cli.core.limit.cone import envelope_of, friction_of, steep
-from dem_cli.core.limit.matrices import NO_LINKS, LimitStructure, structure_of
+from dem_cli.core.limit.matrices import LimitStructure, structure_of
 from dem_cli.core.limit.settings import DEFAULT_LIMIT, LimitSettings
 from dem_cli.core.model.model import Model
 from dem_cli.core.model.scales import largest_structure, smallest_edge
@@ -127,8 +127,6 @@ def limit_loads(
         friction = None
         if not associated_only:
             found = found._replace(no_path=f"not looked for: the path knows friction alone, and law '{law.name}' more")
-    if structure.links.elsewhere:
-        friction, found = None, found._replace(no_path=None if associated_only else f"not looked for: {NO_LINKS}")
     if associated.status == FALLS:
         return found
     settled = associated.status == LOCKED and model.dimension in SETTLED
@@ -144,16 +142,11 @@ def with_path(found: LimitLoads, settings: LimitSettings) -> LimitLoads:
     """Add the failure load of joints that do not dilate, where sliding in the associated mechanism may make it
     another.
 
-    Unchanged where the path does not apply: links, strength beside friction, no dead loads, or too many blocks for it.
+    Unchanged where the path does not apply: strength beside friction, no dead loads, or too many blocks for it.
     """
     structure, associated = found.structure, found.associated
     blocks, dimension = largest_structure(structure.joints.blocks, structure.model.fixed), structure.model.dimension
-    if (
-        associated.upper is None
-        or structure.links.elsewhere
-        or not structure.dead.any()
-        or settings.too_large(blocks, dimension)
-    ):
+    if associated.upper is None or not structure.dead.any() or settings.too_large(blocks, dimension):
         return found
     if not slides(structure, found.friction, associated, settings.associated):
         return found
@@ -277,16 +270,17 @@ def start_structure(
     shared among points, these are those of the DEM joint, so that both are the same joint. Points that are open carry
     nothing: where only a corner touches a face, the other end is far from anything.
 
-    bodies: where the blocks are; None: where they start. near: gap or overlap of faces that touch, in smallest edges.
+    bodies: where the blocks are, the links of the model being those of their simulation; None: where they start.
+    near: gap or overlap of faces that touch, in smallest edges.
     """
     shared = law is not None and law.bonded
     plane = (layout if shared and layout and layout.sides is None else None for layout in properties.layouts)
     properties = properties._replace(layouts=tuple(plane))
-    bodies = bodies_at_rest(model) if bodies is None else bodies
-    built = joints_of_start(model, bodies, properties, smallest_edge(model), near=near)
+    places = bodies_at_rest(model) if bodies is None else bodies
+    built = joints_of_start(model, places, properties, smallest_edge(model), near=near)
     closed = built.contacts.gaps <= 0.0
     bonds = geometry_of(model.dimension).bonds(model, built.geometry)[built.joints.owners]
-    return structure_of(model, only_points(built.joints, closed), bonds[closed])
+    return structure_of(model, only_points(built.joints, closed), bonds[closed], bodies)
 
 
 def load_where_it_rests(

@@ -9,7 +9,7 @@ In units of a mean block weight W and of W over a median joint stiffness. For ev
 In space friction acts nearer to the centre of pressure of its joint than its point (contact/corner_forces.py): Bt is
 that of the normal forces at the begin of the increment, which are those at its end where the load grows no more.
 
-Ties are points without friction, which press as they grow longer (links/tension_points.py).
+Ties and bars are points without friction, which press as they grow longer (links/tension_points.py).
 
 with the cones K of limit.slips, equilibrium Bᵀ(N, T) + dead + λ live = 0 and live·u = D. The bound μN moves with N
 inside Newton's iteration, so that the law is the real, non-associated one; the matrix is not symmetric.
@@ -25,14 +25,13 @@ from scipy.sparse import csr_matrix, diags, vstack
 
 from dem_cli.core.contact.compatibility import free_columns, relative_motion
 from dem_cli.core.kernels.records import Joints
-from dem_cli.core.limit.matrices import NO_LINKS, LimitStructure
+from dem_cli.core.limit.matrices import LimitStructure
 from dem_cli.core.limit.newton_matrix import FrontFactors, NewtonMatrix, PointRows
 from dem_cli.core.limit.settings import DEFAULT_LIMIT, LimitSettings, PathSettings
 from dem_cli.core.limit.slip_cones import SlipCones
 from dem_cli.core.limit.slip_pairs import SlipPairs
 from dem_cli.core.limit.slips import Slips
 from dem_cli.core.links.tension_points import TensionPoints
-from dem_cli.errors import UsageError
 
 NO_TIES = np.zeros(0)
 FAR = 1e6  # units that the point of a tie which yields is open: it carries nothing
@@ -64,7 +63,7 @@ class State(NamedTuple):
     shear: np.ndarray  # T, component by component, ((d − 1)·n_points,)
     slip: np.ndarray  # a of the last increment (limit.slips), (d·n_points,)
     left: float = 0.0  # mean product N p and c ∘ a of a state on the central path, where no solution was found
-    plastic: np.ndarray = NO_TIES  # elongations of ties for good, (n_ties,)
+    plastic: np.ndarray = NO_TIES  # elongations of ties for good, (n_links,)
 
 
 class Direction(NamedTuple):
@@ -111,10 +110,8 @@ class Elastic:
         self.n_joint_points = len(self.kn)
         self.ties: TensionPoints | None = None
         first_gaps = np.zeros(self.n_joint_points) if gaps is None else gaps / self.unit
-        if structure.links.elsewhere:
-            raise UsageError(NO_LINKS)
-        if structure.links.pulling is not None:
-            self.ties = structure.links.pulling.scaled(self.weight, self.unit, self.columns)
+        if structure.links.points is not None:
+            self.ties = structure.links.points.scaled(self.weight, self.unit, self.columns)
             self.kn = np.concatenate([self.kn, self.ties.stiffness])
             self.ks = np.concatenate([self.ks, np.ones(len(self.ties.most))])
             first_gaps = np.concatenate([first_gaps, np.zeros(len(self.ties.most))])
@@ -145,7 +142,7 @@ class Elastic:
         if self.ties is not None:
             self.ties = self.ties._replace(elongation=self.ties.elongation[:, order].tocsr())
         self.own_dead = self.dead  # without ties that yield
-        self.put_ties(np.zeros(self.n_ties, bool), np.zeros(self.n_ties))
+        self.put_ties(np.zeros(self.n_ties, bool), np.zeros(self.n_links))
 
     def displacements(self, scaled: np.ndarray) -> np.ndarray:
         """Displacements of the free degrees of freedom as the structure numbers them [m, rad], (n_free,)."""
@@ -162,8 +159,7 @@ class Elastic:
         return normal * self.weight, state.shear.reshape(-1, self.n_points)[:, :n].T * self.weight, gaps
 
     def put_ties(self, yielding: np.ndarray, plastic: np.ndarray) -> None:
-        """Set the ties that yield, with their largest force, and the plastic elongations of the others, (n_ties,)
-        each."""
+        """Set the points that yield, with their largest force, (n_ties,), and the plastic elongations, (n_links,)."""
         if self.ties is not None:
             self.gaps = self.gaps.copy()
             self.gaps[self.n_joint_points :] = self.ties.gaps(plastic) + np.where(yielding, FAR, 0.0)
@@ -171,8 +167,13 @@ class Elastic:
 
     @property
     def n_ties(self) -> int:
-        """Number of ties."""
+        """Number of points of ties and bars; those that take compression too have two."""
         return 0 if self.ties is None else len(self.ties.most)
+
+    @property
+    def n_links(self) -> int:
+        """Number of ties, and of joints that bars cross."""
+        return 0 if self.ties is None else self.ties.n_links
 
     @property
     def n_points(self) -> int:

@@ -20,14 +20,12 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags
 
 from dem_cli.core.contact.compatibility import compatibility
-from dem_cli.core.kernels.records import Joints
+from dem_cli.core.kernels.records import Bodies, Joints
 from dem_cli.core.laws.envelope import Envelope, envelope
 from dem_cli.core.links.matrices import elongations, joined
 from dem_cli.core.links.tension_points import TensionPoints, tension_points
 from dem_cli.core.model.model import Model
 from dem_cli.core.model.scales import own_weights
-
-NO_LINKS = "the path of joints that do not dilate knows no bars, and of ties only those that pull"
 
 
 class Links(NamedTuple):
@@ -36,16 +34,10 @@ class Links(NamedTuple):
     elongation: csr_matrix  # of each per degree of freedom that is free, (n_links, n_free)
     limits: np.ndarray  # least and largest axial force, tension positive [N], (n_links, 2)
 
-    pulling: TensionPoints | None  # the same as ties that only pull; None: one of them is more than that
+    points: TensionPoints | None  # the same as points of elastic links; None: there are none
 
     def __bool__(self) -> bool:
         return len(self.limits) > 0
-
-    @property
-    def elsewhere(self) -> bool:
-        """Test whether there are links that the static problem of elastic joints (limit/elastic.py) cannot
-        represent."""
-        return bool(self) and self.pulling is None
 
     def as_points(self, dimension: int) -> tuple[csr_matrix, Envelope]:
         """Represent links as contact points without friction that hold tension: rows as of `compatibility`, and
@@ -92,10 +84,12 @@ class LimitStructure(NamedTuple):
         return forces / self.scales
 
 
-def structure_of(model: Model, joints: Joints, bonds: np.ndarray | None = None) -> LimitStructure:
+def structure_of(
+    model: Model, joints: Joints, bonds: np.ndarray | None = None, bodies: Bodies | None = None
+) -> LimitStructure:
     """Matrices and loads of a model whose joints are those of the start (contact.start.joints_of_start).
 
-    bonds: as LimitStructure.bonds; None: of all points.
+    bonds: as LimitStructure.bonds; None: of all points. bodies: where the blocks are; None: where they start.
     """
     d, n_dof = model.dimension, model.dead_loads.shape[1]
     blocks = np.flatnonzero(~model.fixed)
@@ -107,13 +101,13 @@ def structure_of(model: Model, joints: Joints, bonds: np.ndarray | None = None) 
     dead, live = (np.where(model.held[blocks], 0.0, loads) for loads in (dead, live))
     return LimitStructure(
         model, joints, free, compatibility(model, joints), dead.ravel().copy(), live.ravel().copy(), scales.ravel(),
-        bonds, links_of(model),
+        bonds, links_of(model, bodies),
     )  # fmt: skip
 
 
-def links_of(model: Model) -> Links:
-    """Collect the links of a model as they were drawn, with the bounds of their axial forces."""
-    bounded = [link.bounded() for link in model.links]
+def links_of(model: Model, bodies: Bodies | None = None) -> Links:
+    """Collect the links of a model with the bounds of their axial forces; bodies None: as they were drawn."""
+    bounded = [link.bounded(bodies) for link in model.links]
     springs = joined((held for held, _ in bounded), model.dead_loads.shape[1])
     limits = np.concatenate([np.zeros((0, 2)), *(limits for _, limits in bounded)])
     elongation = csr_matrix(elongations(springs, model.fixed))

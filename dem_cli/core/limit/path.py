@@ -109,8 +109,6 @@ def trace(
     plateau   relative growth of the load, over that of the displacement, that counts as none (None: as the settings)
     effort    factorisations × points after which what was reached is returned (None: as the settings)
     progress  called with the load and the displacement of every increment
-
-    Raises UsageError where links are more than ties that only pull.
     """
     problem = Elastic(structure, friction, settings)
     growth_of_plateau = settings.path.plateau if plateau is None else plateau
@@ -292,7 +290,7 @@ def at_rest(problem: Elastic) -> State:
     """
     n, shear = problem.n_points, np.zeros(len(problem.ks_t))
     still, slip = np.zeros(len(problem.columns)), np.zeros(n + len(shear))
-    return State(still, 0.0, np.full(n, 0.5), shear, slip, plastic=np.zeros(problem.n_ties))
+    return State(still, 0.0, np.full(n, 0.5), shear, slip, plastic=np.zeros(problem.n_links))
 
 
 def _advance(

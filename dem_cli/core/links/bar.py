@@ -44,7 +44,7 @@ class Bars(NamedTuple):
     crossing: np.ndarray  # joint that an element crosses, −1: none, (n_elements,) int64
     stiffness: np.ndarray  # of the springs [N/m], (m,)
     limits: np.ndarray  # their largest force [N], (m,)
-    state: np.ndarray  # plastic elongation, elongation [m] (of bonds: slip; of dowels: N over their stiffness), force [N], (m, 3)
+    state: np.ndarray  # plastic elongation, elongation [m] (of dowels N over theirs), force [N], (m, 3)
     node_blocks: np.ndarray  # block in which each node lies, (n,) int64
     node_arms: np.ndarray  # nodes from its centroid [m], (n, d)
     tips: np.ndarray  # both ends of each bar from the centroids of their blocks [m], (n_bars, 2, d)
@@ -160,20 +160,25 @@ class Bars(NamedTuple):
         """Compute the geometric stiffness of the present bar forces (`Spans.turning`)."""
         return self.spans.turning(self.forces, bodies)
 
-    def bounded(self) -> tuple[Springs, np.ndarray]:
+    def bounded(self, bodies: Any = None) -> tuple[Springs, np.ndarray]:
         """Return bars for limit analysis: a force at each joint, at most what yields, or what bond and anchors on
-        either side hold.
+        either side hold; bodies None: as drawn, else kinked as the last step left them.
 
         That bond in a block between two joints also bounds how much these forces differ is left out.
         """
-        held = self.spans
+        held, d = self.spans, self.axes.shape[1]
         axes, _, arms = held.lines(None)
-        most = np.concatenate([np.zeros(0), *(self._anchorage(bar) for bar in range(self.n_drawn))])
+        along = np.concatenate([np.zeros(0), *(self._anchorage(bar) for bar in range(self.n_drawn))])
+        if bodies is not None:  # of an element that leans towards the bar, bond holds the part along that
+            axes, arms = self.directions, self.levers.reshape(-1, 2, d)
+            along = along / np.abs(self.cosines[self.joints]).min(axis=1, initial=1.0)
+        most = np.minimum(along, self.limits[len(self.slips) + self.joints])
         springs = Springs(self.blocks, held.motion(axes, arms), self._own_stiffness())
         return springs, np.column_stack([-most, most])
 
-    def only_pulling(self) -> None:
-        """Return None, as bars are no springs that only pull: they press as well, and slide in their blocks."""
+    def preload(self) -> np.ndarray:
+        """Return the force of bars before any load at the joints that they cross: none [N], (n_joints,)."""
+        return np.zeros(len(self.blocks))
 
     def _anchorage(self, number: int) -> np.ndarray:
         """Compute the largest force of one bar at its joints, by yield, bond and anchors [N], (n_joints of it,)."""
@@ -214,6 +219,11 @@ class Bars(NamedTuple):
         springs = slice(n + len(self.crossing))
         forces = self.stiffness[springs] * (self.state[springs, STRETCH] - self.state[springs, PLASTIC])
         self.state[springs, FORCE] = np.clip(forces, -self.limits[springs], self.limits[springs])
+        beyond = forces - self.state[springs, FORCE]
+        held = self.stiffness[springs] > 0.0
+        self.state[springs, PLASTIC] += np.divide(
+            beyond, self.stiffness[springs], out=np.zeros(len(beyond)), where=held
+        )
 
     # -- what people read --------------------------------------------------------------------------
 

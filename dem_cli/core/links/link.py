@@ -38,14 +38,6 @@ class Springs(NamedTuple):
     stiffness: np.ndarray  # [N/m], (n,)
 
 
-class TensionSprings(NamedTuple):
-    """Springs that pull only, and carry nothing when they are slack."""
-
-    springs: Springs
-    first: np.ndarray  # force while nothing moved [N], (n,)
-    most: np.ndarray  # largest force, at which they yield for good; infinite: none [N], (n,)
-
-
 class LinkReading(NamedTuple):
     """Reading of a link by a monitor: a weighted sum of one column of rows of its state."""
 
@@ -92,11 +84,12 @@ class LinkArrays(Protocol):
     def turning(self, bodies: Any) -> np.ndarray:
         """Compute the geometric stiffness of the present forces, (n, 2·n_dof, 2·n_dof); rows as in `blocks`."""
 
-    def bounded(self) -> tuple[Springs, np.ndarray]:
-        """Springs for limit analysis where they were drawn, with the least and largest force of each [N], (n, 2)."""
+    def bounded(self, bodies: Any = None) -> tuple[Springs, np.ndarray]:
+        """Springs for limit analysis where the blocks are now, with the least and largest force of each [N], (n, 2);
+        None: where they were drawn."""
 
-    def only_pulling(self) -> TensionSprings | None:
-        """Springs that only pull between two blocks, where they were drawn; None where a link does more than that."""
+    def preload(self) -> np.ndarray:
+        """Force of each of the springs of `bounded` before any load, tension positive [N], (n,)."""
 
     def yields(self) -> bool:
         """Test whether any link has a force limit at which it stretches or slides for good."""

@@ -28,7 +28,6 @@ from dem_cli.core.links.link import (
     LinkReading,
     Outline,
     Springs,
-    TensionSprings,
 )
 from dem_cli.core.links.material_points import turned_arm
 from dem_cli.core.links.spans import Spans, spans
@@ -180,15 +179,13 @@ class Ties(NamedTuple):
         """Compute the geometric stiffness of the present tie forces (`Spans.turning`)."""
         return self.spans.turning(self.state[:, FORCE], bodies)
 
-    def bounded(self) -> tuple[Springs, np.ndarray]:
-        """Return ties for limit analysis as they were drawn, with the least and largest force of each [N]."""
-        return self.axial(), self.limits
+    def bounded(self, bodies: Any = None) -> tuple[Springs, np.ndarray]:
+        """Return ties for limit analysis, with the least and largest force of each [N]; bodies None: as drawn."""
+        return self.axial(bodies), self.limits
 
-    def only_pulling(self) -> TensionSprings | None:
-        """Return ties as springs that only pull; None where one takes compression too."""
-        if (self.limits[:, 0] < 0.0).any():
-            return None
-        return TensionSprings(self.axial(), self.prestress, self.limits[:, 1])
+    def preload(self) -> np.ndarray:
+        """Return the prestress of the ties [N], (n,)."""
+        return self.prestress
 
     def yields(self) -> bool:
         """Test whether the force of any tie has a largest value."""

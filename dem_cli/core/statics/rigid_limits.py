@@ -131,7 +131,7 @@ class RigidLimits:
     @cached_property
     def path(self) -> Path | None:
         """Trace the zero-dilation path from gravity to the plateau of its load; None where it does not apply."""
-        if self._matrices is None or self._matrices[0].links.elsewhere:
+        if self._matrices is None:
             return None
         begun = time.perf_counter()
         found = self._traced(*self._matrices)
@@ -153,7 +153,7 @@ class RigidLimits:
     @cached_property
     def history(self) -> LoadHistory | None:
         """Return the implicit history from gravity to failure; None where it does not apply, or was not found."""
-        if self._matrices is None or self._matrices[0].links.elsewhere or self.bound is None:
+        if self._matrices is None or self.bound is None:
             return None
         return self._timed_history(small=False)
 
