@@ -111,7 +111,7 @@ def test_a_bar_across_a_bed_that_slides():
 
 
 def test_the_bound_where_a_block_has_slid_knows_the_kink_of_its_bar():
-    """A block pushed along a bed that a bar crosses carries what the kink holds, which the start cannot, and says so."""
+    """A block pushed along a bed that a bar crosses carries what the kink holds, which the start cannot."""
     rod = ROD | {"yield_stress": 4e8, "bond_strength": 4e4}
     summary, _ = solve(tables(
         block("floor", rectangle(-1, -1, 2, 0), fixed=True), block("b", rectangle(0, 0, 1, 1)), friction=0.6,

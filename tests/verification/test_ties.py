@@ -209,8 +209,8 @@ def test_the_path_knows_rods_that_also_push(dimension, side, held):
 def test_the_path_knows_bars(dimension, lean):
     """A block slides on a bed that a bar crosses, of force F and the angle θ to its normal: μ (W + F cos θ) + F sin θ.
 
-    F is 0 where the bar is square to the bed, which does not stretch it. One that leans against the push is pressed later,
-    and lifts the block: the load is highest before.
+    F is 0 where the bar is square to the bed, which does not stretch it. One that leans against the push is pressed
+    later, and lifts the block: the load is highest before.
     """
     blocks = box("floor", dimension, (-5, -1), (5, 0), fixed=True), box("b", dimension, (0, 0), (2, 0.5))
     path = [across(dimension, 1.0 + lean * z, z) for z in (-0.9, 0.45)]

@@ -369,7 +369,9 @@ def first_moments_of(sim: Simulation, seen: Moment) -> np.ndarray | None:
     found = first_moments.of_loads(sim.model, seen.orientations, dead, live)
     if seen.links is None:
         return found
-    of_links = first_moments.of_links(seen.links, seen.positions, seen.orientations)
+    blocks, points, forces = seen.links.on_blocks(seen.positions, seen.orientations)
+    of, held = blocks[blocks >= 0], blocks >= 0
+    of_links = first_moments.summed(sim.model.n_blocks, of, points[held] - seen.positions[of], forces[held])
     return of_links if found is None else found + of_links
 
 

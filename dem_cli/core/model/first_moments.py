@@ -10,7 +10,6 @@ import numpy as np
 
 from dem_cli.core.model.model import Model
 from dem_cli.core.model.uniform_strain import components
-from dem_cli.core.records.frames import LinkRecord
 
 
 def first_moments(arms: np.ndarray, forces: np.ndarray) -> np.ndarray:
@@ -40,11 +39,3 @@ def of_loads(model: Model, orientations: np.ndarray, dead: float, live: float) -
         ):  # fmt: skip
             total += sign * summed(model.n_blocks, following.blocks, arms, factors * forces)
     return total
-
-
-def of_links(links: LinkRecord, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
-    """Sum the first moments of ties and bars [N m], (n_blocks, 3 or 6); arguments as in Frame."""
-    blocks, points, forces = links.on_blocks(positions, orientations)
-    held = blocks >= 0
-    of = blocks[held]
-    return summed(len(positions), of, points[held] - positions[of], forces[held])
