@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import dem_cli
-from dem_cli.core.records.frames import ContactRecord, Frame
+from dem_cli.core.records.frames import OPTIONAL_ARRAYS, ContactRecord, Frame
 from dem_cli.errors import UsageError
 
 WALL = {
