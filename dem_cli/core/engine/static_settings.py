@@ -116,7 +116,7 @@ class ImplicitHistorySettings:
     verdicts."""
 
     blocks: int = 150  # of one structure in the plane, from which on it is quicker than the path and loads after it
-    effort: float = 4e7  # factorisations × points before giving up
+    effort: float = 3e7  # factorisations × points before giving up
     narrow: float = 0.5  # of the resolution: width of the bracket, so that a load beyond it fails soon
     widest: float = 0.025  # of the load: bracket from which the explicit solver goes on where it stayed wider
     shares: tuple[float, ...] = (0.5, 0.8, 0.9)  # of the bound: first loads
