@@ -58,6 +58,8 @@ kn = 1e11
 KINDS = {
     "gravity": "",
     "pushover": f"follow = 0.004\nresolution = 0.02\n{TIED}",  # with points, so that it turns about an edge
+    "pushover of rigid joints": "follow = 0.0\n",  # with certificates, here of a proof that a load is impossible
+    "pushover of rigid joints in moving geometry": 'follow = 0.0\nkinematics = "large"\n',  # and here of failure
     "cycle": "path = [0.02, 0.0]\nstep = 0.02\n",
     "modes": "",
     "time-history": f"duration = 0.3\n{SHAKEN}",
@@ -75,7 +77,8 @@ def folders(tmp_path_factory):
         case = place / f"{kind}.toml"
         column = COLUMN.replace("CRACK", 'crack = "crack"\n' if CRACKING in more else "")
         column = column.replace("kn = 1e9", "kn = 1e9\npoints = 5") if kind == "pushover" else column
-        case.write_text(f'{column}[analysis]\nkind = "{kind}"\n{more}', encoding="utf-8")
+        column = column.replace("kn = 1e9\n", "") if "rigid" in kind else column
+        case.write_text(f'{column}[analysis]\nkind = "{kind.split()[0]}"\n{more}', encoding="utf-8")
         dem_cli.run(case, out=place / kind).close()
     return {kind: place / kind for kind in KINDS}
 
