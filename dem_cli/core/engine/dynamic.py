@@ -58,7 +58,6 @@ class DynamicSimulation(Simulation):
         if len(model.principal_axes):  # inertia is a tensor, which turns with its block
             self.masses[:, model.rotations] = 0.0
         self.masses[:, model.rotations.stop :] = 0.0  # matrices, in StrainRates
-        properties = properties._replace(integrated=None)  # blocks land on the points of their joints
         super().__init__(model, law, properties, "large", settings=settings)
         self.dead_loads = self.loads.dead.copy()  # before velocities have mean spins
         self.carriers = NO_CARRIERS  # what carried blocks when the motion began (dynamics/supports.py)
@@ -156,6 +155,7 @@ class DynamicSimulation(Simulation):
         joints, contacts, d = self.joints, self.contacts, self.model.dimension
         n = len(joints.kn) if self.damping.in_joints else 0
         of_modes = (n, 2, d, self.model.n_modes) if self.model.n_modes else (0,)
+        faces = n if self.integrates else 0
         self.dampers = Dampers(
             first=self.law.n_memory(d),
             viscosity=self.damping.viscosities(self.model, joints),
@@ -178,6 +178,15 @@ class DynamicSimulation(Simulation):
             strained=self.strained,
             motions=np.zeros(of_modes),
             lifts=np.zeros(of_modes),
+            at_kn=np.zeros(faces),
+            at_ks=np.zeros(faces),
+            at_normal=np.zeros(faces),
+            at_gaps=np.zeros(faces),
+            at_frames=np.zeros((faces, joints.frames.shape[1])),
+            at_levers=np.zeros((faces, joints.levers.shape[1])),
+            at_points=np.zeros((faces, d)),
+            shut=(contacts.gaps[:faces] < 0.0).astype(np.int8),
+            unsettled=np.zeros(len(joints.blocks) if faces else 0, dtype=np.int8),
         )
 
     def _trifles(self) -> np.ndarray:
@@ -289,7 +298,7 @@ class DynamicSimulation(Simulation):
     def _compiled_shake(self) -> CompiledKernel:
         return compiled_shake(
             self.law, self.properties.profiled, self.damping.in_joints, self.model.dimension, self.kinds_of_links,
-            self.order_within_blocks,
+            self.order_within_blocks, self.integrates,
         )  # fmt: skip
 
     # -- energy ------------------------------------------------------------------------------------

@@ -59,8 +59,7 @@ def joint_properties(
 
     step: time step [s] that velocities in a law refer to; infinite where time has no meaning: all motion is slow.
     lands: whether blocks land on each other, so that joints keep the points at their ends; None: in time histories.
-    integrates: whether the pressure on elastic joints is integrated over their faces. Not where blocks land, in any
-    case: a face that takes the blow as a whole does not lose what Housner's block does.
+    integrates: whether the pressure on elastic joints is integrated over their faces.
     """
     asked = request.joints
     names, by_material, heads = tuple(asked.named), asked.by_material, asked.heads
@@ -83,7 +82,6 @@ def joint_properties(
     deforming = _with_deforming_blocks(model, lying, compliance, np.flatnonzero(bending))
     bent = set(lying[:, np.flatnonzero(bending)].ravel().tolist())  # two points cannot tell how a block bends
     lands = request.in_seconds if lands is None else lands
-    integrates = integrates and not lands
     integrated = np.array([integrates and table.integrates and k not in bent for k, table in enumerate(tables)])
     layouts = tuple(
         None if integrated[k] and (k in deforming or table.kn != "auto")

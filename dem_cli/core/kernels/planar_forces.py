@@ -16,7 +16,7 @@ from dem_cli.core.kernels.deformation.matrices import load_matrix
 from dem_cli.core.kernels.deformation.pressed_faces import line_gaps, rubbing_together
 from dem_cli.core.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.core.kernels.jit import inline, named
-from dem_cli.core.kernels.planar_geometry import apart, overlap_of, place_end, refresh_lengths
+from dem_cli.core.kernels.planar_geometry import apart, keep_end, overlap_of, place_end, refresh_lengths
 from dem_cli.core.kernels.records import INTEGRATED
 from dem_cli.core.kernels.vec import axpy, compose, load, scale, sliding
 
@@ -44,7 +44,6 @@ def make_planar_forces(
     def planar_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
         """Add the forces of all joints on their blocks to `forces`; returns the friction work [J]."""
         blocks, starts, edges, scales = joints.blocks, joints.starts, geometry.edges, geometry.scales
-        frames, levers = joints.frames, joints.levers
         gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
         stretchings, d = bodies.stretchings, len(like)
@@ -96,16 +95,17 @@ def make_planar_forces(
             if elastic:
                 low = place_end(xa, xb, share_low, true_low, ta, tb, a0, b1)
                 high = place_end(xa, xb, share_high, true_high, ta, tb, a1, b0)
+                if whole and keeps:
+                    keep_end(joints, first, low)
+                    keep_end(joints, second, high)
                 if whole:
                     low, high = rubbing_together(low, high, gap_low, gap_high)
             if on_low:
                 if not elastic:
                     low = place_end(xa, xb, share_low, true_low, ta, tb, a0, b1)
                 frame, levers_a, levers_b, place = low
-                if keeps:
-                    frames[first, 0], frames[first, 1] = frame[0]
-                    levers[first, 0], levers[first, 1] = levers_a[0][0], levers_a[1][0]
-                    levers[first, 2], levers[first, 3] = levers_b[0][0], levers_b[1][0]
+                if keeps and not whole:
+                    keep_end(joints, first, low)
                 slide = sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt)
                 if strains:
                     arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
@@ -126,10 +126,8 @@ def make_planar_forces(
                 if not elastic:
                     high = place_end(xa, xb, share_high, true_high, ta, tb, a1, b0)
                 frame, levers_a, levers_b, place = high
-                if keeps:
-                    frames[second, 0], frames[second, 1] = frame[0]
-                    levers[second, 0], levers[second, 1] = levers_a[0][0], levers_a[1][0]
-                    levers[second, 2], levers[second, 3] = levers_b[0][0], levers_b[1][0]
+                if keeps and not whole:
+                    keep_end(joints, second, high)
                 slide = sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt)
                 if strains:
                     arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)

@@ -116,10 +116,9 @@ def make_spatial_forces(
     meets: in time histories; geometry is held there while blocks hardly move. rigid: as in planar_forces.py.
     remembers: numbers of a point's memory that belong to the law. capped: joints may have caps. strains: blocks deform
     (kernels/deformation); their faces stay plane, and geometry is measured in each step. elastic: there are faces over
-    which pressure is integrated (kernels/deformation/pressed_faces.py), in statics.
+    which pressure is integrated (kernels/deformation/pressed_faces.py).
     """
     assert remembers <= MOST_LEFT
-    assert not (elastic and meets)
     press, holds, books = make_press(law, bonded), meets and not strains, rigid and not bonded
 
     @inline
@@ -146,7 +145,16 @@ def make_spatial_forces(
                 gradient_a, gradient_b = load_matrix(stretchings, a, like), load_matrix(stretchings, b, like)
             whole = elastic and joints.integrated[joint] == INTEGRATED
             if whole:
-                fan_out(joints, number)
+                if held:
+                    for p in range(starts[joint], starts[number + 1]):
+                        point = np.uint64(p)
+                        if stiffness[point] > 0.0:
+                            place = axpy(dt, va, load(places, point, 0, like))
+                            swept = axpy(-1.0, sweep(spin_a, axpy(-1.0, xa, place)), relative)
+                            moved = axpy(1.0, sweep(spin_b, axpy(-1.0, xb, place)), swept)
+                            gaps[point] += dt * dot(moved, load_frame(frames, point, like)[0])
+                else:
+                    fan_out(joints, number)
                 share_pressure(joints, contacts, number)
             share, rub, middle, centre = joints.torsion[joint], scale(0.0, like), scale(0.0, like), xa
             if share != 1.0:
@@ -170,7 +178,7 @@ def make_spatial_forces(
                     moved = axpy(1.0, axpy(-1.0, times(gradient_a, arm_a), times(gradient_b, arm_b)), moved)
                 if held:
                     opened = dt * dot(moved, frame[0])
-                    gap = gaps[point] + opened
+                    gap = gaps[point] if whole else gaps[point] + opened
                     gaps[point] = gap
                 else:
                     opened, gap = geometry.opened[point], gaps[point]
