@@ -15,7 +15,7 @@ import numpy as np
 
 from dem_cli.core.kernels.advance import local_drag
 from dem_cli.core.kernels.dashpots import book_elements, book_supports
-from dem_cli.core.kernels.deformation.face_dashpots import seat_dashpots, stir_faces
+from dem_cli.core.kernels.deformation.face_dashpots import let_go, seat_dashpots, stir_faces
 from dem_cli.core.kernels.deformation.quadratic import bend, resist_bending
 from dem_cli.core.kernels.deformation.strain_rates import (
     book_modes,
@@ -306,7 +306,7 @@ def make_shake(
                 resist_in_time(bodies, shape, strained, like, like_rotation)
             if damped:
                 if elastic:
-                    seat_dashpots(joints, contacts, dampers, seats, like)
+                    seat_dashpots(joints, contacts, dampers, seats, bodies, like)
                 met = meet(joints, contacts, bodies, inverse_masses, dampers, seats, dt, like, like_rotation)
                 if elastic:
                     met += stir_faces(dampers)
@@ -321,6 +321,8 @@ def make_shake(
                     velocities[ground.moving[j], k] = ground.velocities[step, j, k]
             if damped:
                 turns = TURNS_OF_IMPACT if met > 0 else 1
+                if elastic:
+                    let_go(joints, contacts, bodies, inverse_masses, dampers, seats, dt, like, like_rotation)
                 resist(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation)
                 book_elements(
                     dampers.elements, joints, contacts, bodies, dampers, seats, dt, ledger, like, like_rotation
