@@ -1,7 +1,7 @@
 """A rigid block on an elastic bed without tension: motion in the plane by its differential equation, without dem.
 
-The bed is level and presses upwards, p = kn ⟨d⟩ + cn ḋ where the face is d deep, never less than nothing; a spring
-along it holds the face at the centre of pressure. Sums over strips of the face stand for integrals.
+The bed is level and presses upwards, p = kn (d + τ ḋ) where the face is d deep, never less than nothing; a spring and a
+dashpot along it hold the face at the centre of pressure. Sums over strips of the face stand for integrals.
 """
 
 from __future__ import annotations
@@ -11,6 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import solve_ivp
+
+
+LETS_GO = 1e-4  # s in which a block in the air loses the force along the bed
 
 
 @dataclass(frozen=True)
@@ -53,17 +56,17 @@ class WinklerBlock:
         at_x = moment / force if force > 0.0 else 0.0
         at_y = float(np.interp(at_x, arm_x, arm_y))
         slides = vx - spin * at_y
-        held = self.ks * self.width * closed.mean() * 0.0 + self.ks * self.width
-        push = shear - self.ks * self.width * self.delay * closed.mean() * slides if force > 0.0 else 0.0
-        change = -held * slides if force > 0.0 else -shear / 1e-4
+        held, touches = self.ks * self.width, force > 0.0
+        push = shear - held * self.delay * closed.mean() * slides if touches else 0.0
+        change = -held * slides if touches else -shear / LETS_GO
         turning = (moment - at_y * push) / self.inertia
         return [vx, vy, spin, push / self.mass, force / self.mass - self.gravity, turning, change]
 
     def motion(self, velocity: tuple[float, float, float], times: np.ndarray) -> np.ndarray:
-        """Motion (x, y, θ) from rest with a velocity of the centroid and a spin, (n_times, 3)."""
+        """Motion (x, y, θ) from rest with a velocity of the centroid and a spin, from where it is drawn, (n_times, 3)."""
         start = [0.0, 0.5 * self.height - self.sunk, 0.0, *velocity, 0.0]
         period = 2.0 * math.pi * math.sqrt(self.mass / (max(self.kn, self.ks) * self.width))
         found = solve_ivp(
             self.rates, (0.0, times[-1]), start, t_eval=times, rtol=1e-8, atol=1e-11, max_step=period / 20.0
         )
-        return found.y[:3].T - [0.0, 0.5 * self.height - self.sunk, 0.0]
+        return found.y[:3].T - [0.0, 0.5 * self.height, 0.0]
