@@ -163,8 +163,8 @@ def test_damping_ratios_are_those_asked_for(damping, dimension):
     start = {"block": "b0", "velocity": [1e-6, *[0.0] * (2 if dimension == 2 else 5)]}
     summary, times, motion = swung(case, start, {"block": "b0", "component": "x"}, frequency, damping=asked)
     early, late = (np.ptp(motion[(times >= at / frequency) & (times < (at + 1.5) / frequency)]) for at in (0.0, 8.0))
-    assert np.log(early / late) / (2.0 * np.pi * 8.0) == pytest.approx(ratio, rel=0.1)
-    assert abs(summary["energy_closure"]) < 1e-3
+    assert np.log(early / late) / (2.0 * np.pi * 8.0) == pytest.approx(ratio, rel=0.15)  # by cycles
+    assert abs(summary["energy_closure"]) < 1e-6
 
 
 @pytest.mark.parametrize("slenderness", [2.0, 4.0])

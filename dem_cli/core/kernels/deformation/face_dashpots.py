@@ -189,18 +189,32 @@ def _part_below(joints, start, count, frame, origin, one, two):
     return sums
 
 
+@always_inline
+def _direction(slope):
+    """Compute the direction of a slope, or one at right angles to it, within 45° of the first axis: four dashpots stay
+    where they were, each with its memory, while a face tilts to and fro.
+    """
+    x, y = slope
+    if abs(x) < abs(y):
+        x, y = y, -x
+    size = math.sqrt(x * x + y * y)
+    if size == 0.0:
+        return (1.0, 0.0)
+    size = size if x > 0.0 else -size
+    return (x / size, y / size)
+
+
 @inline
 def _put_in_part(joints, contacts, dampers, seats, face, sums, start, frame, origin, gap_at, slope):
     """Put dashpots at places that stand for a part of a face with these moments. face: first point and the one after
-    the last, how many there are, normal and shear stiffness of the part.
+    the last, how many there are, whether the part is not all of it, its normal and shear stiffness.
     """
-    first, last, count, kn, ks = face
+    first, last, count, partly, kn, ks = face
     x, y, z = sums[1] / sums[0], sums[2] / sums[0], sums[3] / sums[0]
     xx, xy, yy = sums[4] / sums[0] - x * x, sums[5] / sums[0] - x * y, sums[6] / sums[0] - y * y
     root = math.sqrt(max(xx * yy - xy * xy, 0.0))
     per = 1.0 / math.sqrt(max(xx + yy + 2.0 * root, 1e-300))
-    steep = math.sqrt(slope[0] * slope[0] + slope[1] * slope[1])
-    e = (slope[0] / steep, slope[1] / steep) if steep > 0.0 else (1.0, 0.0)
+    e = _direction(slope) if partly and count > 3 else (1.0, 0.0)
     one = (per * ((xx + root) * e[0] + xy * e[1]), per * (xy * e[0] + (yy + root) * e[1]))
     two = (per * (xy * e[0] - (xx + root) * e[1]), per * ((yy + root) * e[0] - xy * e[1]))
     n, k = 4 if count > 3 else 3, 0
@@ -261,7 +275,7 @@ def _seat_in_outline(joints, contacts, dampers, seats, bodies, joint):
         sums = _part_below(joints, start, count, frame, origin, gap, later)
         share = sums[0] / whole
     if share > 0.0:
-        face = (first, last, count, share * total, share * along)
+        face = (first, last, count, share < 1.0 - ALL, share * total, share * along)
         _put_in_part(joints, contacts, dampers, seats, face, sums, start, frame, origin, mean, slope)
     return pressed, share
 
