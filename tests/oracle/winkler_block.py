@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import solve_ivp
 
-
 LETS_GO = 1e-4  # s in which a block in the air loses the force along the bed
 
 

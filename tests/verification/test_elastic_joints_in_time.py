@@ -55,7 +55,9 @@ def swung(case: dict, velocity: dict, monitor: dict, frequency: float, **more) -
     shaken = {"kind": "time-history", "duration": 12.0 / frequency}
     output = {"frames": 0, "rate": 100.0 * frequency}
     summary, records = solve(
-        case | {"analysis": shaken, "damping": NONE, "initial": [velocity], "monitor": [monitor], "output": output} | more
+        case
+        | {"analysis": shaken, "damping": NONE, "initial": [velocity], "monitor": [monitor], "output": output}
+        | more
     )
     history = records.history
     return summary, history.times, history.monitors[:, 0]
@@ -104,7 +106,7 @@ def test_a_block_twists_as_modes_say():
 
 
 def bed(dimension: int, delay: float, duration: float = 1.5, **shaken) -> dict:
-    """A block of 0.5 × 1 m, a metre thick, that starts from rest to turn with 0.9 rad/s about the middle of its foot."""
+    """A block of 0.5 × 1 m, a metre thick, that starts to turn with 0.9 rad/s about the middle of its foot."""
     spin = 0.9
     if dimension == 2:
         stone, velocity = block("b", rectangle(-WIDTH / 2, 0.0, WIDTH / 2, HEIGHT)), [-spin * HEIGHT / 2, 0.0, spin]
@@ -113,7 +115,11 @@ def bed(dimension: int, delay: float, duration: float = 1.5, **shaken) -> dict:
         stone = box("b", (-WIDTH / 2, -0.5, 0.0), (WIDTH / 2, 0.5, HEIGHT))
         velocity = [-spin * HEIGHT / 2, 0.0, 0.0, 0.0, -spin, 0.0]
         upright, turn = {"component": "z"}, {"component": "y"}
-    monitors = [{"block": "b", "component": "x"}, {"block": "b"} | upright, {"block": "b", "quantity": "rotation"} | turn]
+    monitors = [
+        {"block": "b", "component": "x"},
+        {"block": "b"} | upright,
+        {"block": "b", "quantity": "rotation"} | turn,
+    ]
     return tables(
         ground(dimension), stone, density=DENSITY, joints={"dry": {"friction": 10.0, "kn": SOFT, "ks": SOFT}},
         analysis={"kind": "time-history", "duration": duration} | shaken, monitor=monitors,

@@ -255,23 +255,28 @@ def _seat_in_outline(joints, contacts, dampers, seats, bodies, joint):
     whole, slope = _outline(joints, contacts, start, count, frame, origin)
     if whole == 0.0:
         return -1.0, -1.0
-    for point in range(first, last):
-        if joints.kn[point] > 0.0:
-            at = _seen_in(frame, origin, load(joints.points, point, 0, nothing))
-            mean += (contacts.gaps[point] - slope[0] * at[0] - slope[1] * at[1]) / count
-    gap, always = (mean, slope[0], slope[1]), (-1.0, 0.0, 0.0)
-    sums = _part_below(joints, start, count, frame, origin, gap, always)
-    pressed = share = sums[0] / whole
+    later_rate, later_slope, lets_go = 0.0, slope, False
     delay = dampers.viscosity[joint]
-    if delay > 0.0 and bodies.stretchings.shape[0] == 0:
+    viscous = delay > 0.0 and bodies.stretchings.shape[0] == 0
+    if viscous:
         a, b = joints.blocks[joint, 0], joints.blocks[joint, 1]
         spin = axpy(-1.0, load(bodies.velocities, a, 3, nothing), load(bodies.velocities, b, 3, nothing))
-        rate = _rate(joints, bodies, joint, start, nothing, nothing)
-        later = (
-            mean + delay * rate,
+        later_rate = delay * _rate(joints, bodies, joint, start, nothing, nothing)
+        later_slope = (
             slope[0] + delay * dot(frame[0], sweep(spin, frame[1])),
             slope[1] + delay * dot(frame[0], sweep(spin, frame[2])),
         )
+    for point in range(first, last):
+        if joints.kn[point] > 0.0:
+            at = _seen_in(frame, origin, load(joints.points, point, 0, nothing))
+            gap = contacts.gaps[point] - slope[0] * at[0] - slope[1] * at[1]
+            mean += gap / count
+            lets_go = lets_go or gap + later_rate + later_slope[0] * at[0] + later_slope[1] * at[1] >= 0.0
+    gap, always = (mean, slope[0], slope[1]), (-1.0, 0.0, 0.0)
+    sums = _part_below(joints, start, count, frame, origin, gap, always)
+    pressed = share = sums[0] / whole
+    if lets_go and viscous:
+        later = (mean + later_rate, later_slope[0], later_slope[1])
         sums = _part_below(joints, start, count, frame, origin, gap, later)
         share = sums[0] / whole
     if share > 0.0:
