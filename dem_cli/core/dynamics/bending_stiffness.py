@@ -51,7 +51,7 @@ def bending_doubts(request: SolverRequest, model: Model, settings: Settings = DE
         return []
     first, where = int(soft.argmax()), "two ends" if model.dimension == 2 else "corners of its area"
     return [
-        f"damping.restitution is that of blocks that land on the {where} of joint '{ends.names[first]}', which bends too "
-        f"little there: blocks turn by {turns[0]:.2g} rad when their weight acts sideways, with pressure over the face "
+        f"damping.restitution is that of blocks that land on the {where} of joint '{ends.names[first]}', which bends "
+        f"too little there: blocks turn by {turns[0]:.2g} rad when their weight acts sideways, with pressure over the face "
         f"by {turns[1]:.2g}; give another damping where vibrations count, points = 2 where blows do"
     ]

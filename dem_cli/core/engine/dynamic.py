@@ -20,6 +20,7 @@ from dem_cli.core.geometry.inertia import along_principal, gyration, mobilities
 from dem_cli.core.geometry.rotation import along_frames
 from dem_cli.core.kernels import records as slot
 from dem_cli.core.kernels.dashpots import OPEN, STARTS, STICKS
+from dem_cli.core.kernels.deformation.face_dashpots import LETS_GO
 from dem_cli.core.kernels.jit import CompiledKernel
 from dem_cli.core.kernels.records import NO_GAUGES, Dampers, Gauges, Ground, Watch
 from dem_cli.core.kernels.spatial_dashpots import GAINS
@@ -199,7 +200,11 @@ class DynamicSimulation(Simulation):
         if not self.real:
             return super().forces_on_second()
         contacts, d = self.contacts, self.model.dimension
-        forces = np.column_stack([contacts.normal, contacts.shear])
+        normal = contacts.normal
+        if self.integrates and self.damping.in_joints:
+            goes = (self.dampers.unsettled & LETS_GO > 0)[self.joints.owners]
+            normal = np.where(goes, self.dampers.at_normal, normal)
+        forces = np.column_stack([normal, contacts.shear])
         if self.damping.in_joints:
             first, memory = self.dampers.first, contacts.memory
             forces += memory[:, first : first + d] / self.dt

@@ -13,7 +13,7 @@ import numpy as np
 from dem_cli.core.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart, swing
 from dem_cli.core.kernels.deformation.joint_spread import spread_between
 from dem_cli.core.kernels.deformation.matrices import load_matrix
-from dem_cli.core.kernels.deformation.pressed_faces import line_gaps, rubbing_together
+from dem_cli.core.kernels.deformation.pressed_faces import line_gaps, meeting_share, rubbing_together
 from dem_cli.core.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.core.kernels.jit import inline, named
 from dem_cli.core.kernels.planar_geometry import apart, keep_end, overlap_of, place_end, refresh_lengths
@@ -75,7 +75,10 @@ def make_planar_forces(
             gaps[second] = gap_high
             whole = elastic and joints.integrated[joint] == INTEGRATED
             if whole:
+                together = meeting_share(min(gap_low, gap_high), opened_low if gap_low < gap_high else opened_high)
                 gap_low, gap_high = line_gaps(gap_low, gap_high)
+                if meets:
+                    gap_low, gap_high = together * gap_low, together * gap_high
             elif meets and not bonded:
                 gap_low, gap_high = meeting(gap_low, opened_low), meeting(gap_high, opened_high)
             if rigid and not wrong and not whole:

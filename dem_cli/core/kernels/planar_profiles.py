@@ -17,7 +17,7 @@ import numpy as np
 from dem_cli.core.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart, swing
 from dem_cli.core.kernels.deformation.joint_spread import spread_between
 from dem_cli.core.kernels.deformation.matrices import load_matrix
-from dem_cli.core.kernels.deformation.pressed_faces import line_gaps, rubbing_together
+from dem_cli.core.kernels.deformation.pressed_faces import line_gaps, meeting_share, rubbing_together
 from dem_cli.core.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
 from dem_cli.core.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.core.kernels.jit import always_inline, inline, kernel, named
@@ -166,6 +166,12 @@ def make_profiled_forces(
                     keep_end(joints, last, high_end)
                 if whole:
                     end_low, end_high = line_gaps(gap_low + offset, gap_high + offset)
+                if whole and meets:
+                    at_end = first if gap_low < gap_high else last
+                    deepest = min(gap_low, gap_high) + offset
+                    together = meeting_share(deepest, deepest - gaps[at_end])
+                    end_low, end_high = together * end_low, together * end_high
+                if whole:
                     low_end, high_end = rubbing_together(low_end, high_end, end_low, end_high)
             loaded = False
             for p in range(first, last + 1):

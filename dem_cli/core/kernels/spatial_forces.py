@@ -14,7 +14,7 @@ import numpy as np
 
 from dem_cli.core.kernels.contact_point import jolt, make_press, meeting, push_apart, swing
 from dem_cli.core.kernels.deformation.matrices import load_matrix, times
-from dem_cli.core.kernels.deformation.pressed_faces import fan_out, share_pressure
+from dem_cli.core.kernels.deformation.pressed_faces import fan_out, meeting_share, share_pressure
 from dem_cli.core.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.core.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.core.kernels.joint_plane import LEAST_PUSH, moment, sweep
@@ -144,7 +144,9 @@ def make_spatial_forces(
             if strains:
                 gradient_a, gradient_b = load_matrix(stretchings, a, like), load_matrix(stretchings, b, like)
             whole = elastic and joints.integrated[joint] == INTEGRATED
+            together = 1.0
             if whole:
+                deepest, opened = 0.0, 0.0
                 if held:
                     for p in range(starts[joint], starts[number + 1]):
                         point = np.uint64(p)
@@ -152,9 +154,14 @@ def make_spatial_forces(
                             place = axpy(dt, va, load(places, point, 0, like))
                             swept = axpy(-1.0, sweep(spin_a, axpy(-1.0, xa, place)), relative)
                             moved = axpy(1.0, sweep(spin_b, axpy(-1.0, xb, place)), swept)
-                            gaps[point] += dt * dot(moved, load_frame(frames, point, like)[0])
+                            geometry.opened[point] = dt * dot(moved, load_frame(frames, point, like)[0])
+                            gaps[point] += geometry.opened[point]
                 else:
                     fan_out(joints, number)
+                for p in range(starts[joint], starts[number + 1]):
+                    if meets and stiffness[p] > 0.0 and gaps[p] < deepest:
+                        deepest, opened = gaps[p], geometry.opened[p]
+                together = meeting_share(deepest, opened)
                 share_pressure(joints, contacts, number)
             share, rub, middle, centre = joints.torsion[joint], scale(0.0, like), scale(0.0, like), xa
             if share != 1.0:
@@ -183,7 +190,7 @@ def make_spatial_forces(
                 else:
                     opened, gap = geometry.opened[point], gaps[point]
                 if whole:
-                    gap = contacts.lumped[point]
+                    gap = together * contacts.lumped[point]
                 elif meets and not bonded:
                     gap = meeting(gap, opened)
                 if rigid and not whole:
