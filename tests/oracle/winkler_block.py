@@ -62,7 +62,7 @@ class WinklerBlock:
         return [vx, vy, spin, push / self.mass, force / self.mass - self.gravity, turning, change]
 
     def motion(self, velocity: tuple[float, float, float], times: np.ndarray) -> np.ndarray:
-        """Motion (x, y, θ) from where it is drawn, (n_times, 3); it rests, but for a velocity and a spin that it has."""
+        """Motion (x, y, θ) from where it is drawn, (n_times, 3); it rests but for this velocity and spin."""
         start = [0.0, 0.5 * self.height - self.sunk, 0.0, *velocity, 0.0]
         period = 2.0 * math.pi * math.sqrt(self.mass / (max(self.kn, self.ks) * self.width))
         found = solve_ivp(

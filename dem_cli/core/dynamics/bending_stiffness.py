@@ -50,8 +50,9 @@ def bending_doubts(request: SolverRequest, model: Model, settings: Settings = DE
     if turns[1] - turns[0] <= settings.rocking.doubtful:
         return []
     first, where = int(soft.argmax()), "two ends" if model.dimension == 2 else "corners of its area"
+    name = ends.names[first]
     return [
-        f"damping.restitution is that of blocks that land on the {where} of joint '{ends.names[first]}', which bends "
-        f"too little there: blocks turn by {turns[0]:.2g} rad when their weight acts sideways, with pressure over the face "
-        f"by {turns[1]:.2g}; give another damping where vibrations count, points = 2 where blows do"
+        f"damping.restitution is that of blocks that land on the {where} of joint '{name}', which bends too little "
+        f"there: blocks turn by {turns[0]:.2g} rad when their weight acts sideways, with pressure over the face by "
+        f"{turns[1]:.2g}; give another damping where vibrations count, points = 2 where blows do"
     ]
