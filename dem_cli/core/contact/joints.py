@@ -150,9 +150,7 @@ class JointProperties(NamedTuple):
     def spread_between(self, model: Model, blocks: np.ndarray) -> np.ndarray:
         """Test whether friction between each pair of blocks (n, 2) has the torsion of a spread pressure, (n,) bool."""
         spread = self.spread[self.between(model, blocks)]
-        if not self.lands:
-            return spread
-        return spread & (self.rigid_between(model, blocks) | self.integrated_between(model, blocks))
+        return spread & self.rigid_between(model, blocks) if self.lands else spread
 
     def stiffness_of(self, named: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Compute normal and shear stiffness kn, ks of joints by name and faces [Pa/m], (n,) each, with the compliance

@@ -1,8 +1,7 @@
-"""Bending stiffness of soft joints in time histories with a restitution: their points at the ends are too stiff, and
-where that matters.
+"""Bending stiffness of soft joints in time histories: their points at the ends are too stiff, and where that matters.
 
-A restitution is that of blocks that land on the ends of their joints, as rigid ones do. But two points resist bending
-three times as much as the area of a joint does. How much bending counts is the angle ε by which blocks
+Blocks land on the ends of their joints, as rigid ones do: points between them take part of the blow. But two points
+resist bending three times as much as the area of a joint does. How much bending counts is the angle ε by which blocks
 turn on their joints when their weight acts sideways (dynamics/rocking_stiffness.py).
 """
 
@@ -28,8 +27,7 @@ SOFTER = 10.0  # times that blocks turn further with points of bending, which ar
 def bending_doubts(request: SolverRequest, model: Model, settings: Settings = DEFAULT) -> list[str]:
     """Warn of joints whose stiffness is a property, and that have points at their ends although bending counts.
 
-    Only a restitution that is asked for leaves them there. None where it is given how many points they have, or where
-    blocks hardly turn further with those of bending.
+    None where it is given how many points they have, or where blocks hardly turn further with those of bending.
     """
     ratio = settings.stiffness.dynamics
     ends, bending = (joint_properties(request, model, ratio, lands=lands, integrates=False) for lands in (True, False))
@@ -49,10 +47,10 @@ def bending_doubts(request: SolverRequest, model: Model, settings: Settings = DE
             return []
     if turns[1] - turns[0] <= settings.rocking.doubtful:
         return []
-    first, where = int(soft.argmax()), "two ends" if model.dimension == 2 else "corners of its area"
-    name = ends.names[first]
+    first, where = int(soft.argmax()), "its two ends" if model.dimension == 2 else "the corners of its area"
+    name, points = ends.names[first], bending.plane[first].points
     return [
-        f"damping.restitution is that of blocks that land on the {where} of joint '{name}', which bends too little "
-        f"there: blocks turn by {turns[0]:.2g} rad when their weight acts sideways, with pressure over the face by "
-        f"{turns[1]:.2g}; give another damping where vibrations count, points = 2 where blows do"
+        f"joint '{name}' has its points at {where}, on which blocks land as rigid ones do, and bends too little: "
+        f"blocks turn by {turns[0]:.2g} rad when their weight acts sideways, with points = {points} by {turns[1]:.2g}; "
+        f"give points = {points} where vibrations count, points = 2 where blows do"
     ]

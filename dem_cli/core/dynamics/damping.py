@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from dem_cli.core.contact.joints import JointArrays
 from dem_cli.core.dynamics.restitution import fraction_of, reference_block
 from dem_cli.core.engine.settings import DEFAULT, Settings
@@ -32,9 +30,7 @@ def damping_of(request: SolverRequest, model: Model, start: JointArrays, setting
         words.append("dashpots of the joints")
     if asked.restitution is not None:
         fraction, said = fraction_of(request, model, start, settings)
-        given = any(joint.kn != "auto" for joint in request.joints.named.values())
-        given |= bool(np.isfinite(request.joints.moduli).any())
-        words.append(f"{said}, which lands on the ends of its joints" if given else said)
+        words.append(said)
     if asked.contact_fraction:
         fraction = asked.contact_fraction
         words.append(f"dashpots of the joints, {fraction:.3g} of critical")

@@ -117,8 +117,7 @@ def system(sim: Simulation, closed: np.ndarray | None = None, geometric: bool = 
     """
     contacts = sim.measured()  # and frames and levers of this instant
     model, joints = sim.model, sim.joints
-    normal = None if closed is None else np.where(closed, contacts.normal, 0.0)
-    found = springs_of(model, joints, closed, sim.settings.frequency, sim.bodies, contacts.gaps, normal)
+    found = springs_of(model, joints, closed, sim.settings.frequency, sim.bodies, contacts.gaps)
     found = found._replace(rows=_with_links(found, sim, closed is not None))
     if not geometric:
         return found
@@ -162,13 +161,11 @@ def springs_of(
     settings: FrequencySettings = DEFAULT.frequency,
     bodies: Bodies | None = None,
     gaps: np.ndarray | None = None,
-    normal: np.ndarray | None = None,
 ) -> System:
     """Springs and masses of joints whose frames and levers are current; closed: as for `system`.
 
     bodies: where all blocks are, with the modes of those that deform; None: none has turned, and all are rigid.
     gaps: of all points [m], by which elastic faces are closed in part; None: they are closed, or open, as a whole.
-    normal: forces of all points [N], by which friction of elastic faces in space has its torsion; None: at the points.
     """
     from scipy.sparse import vstack
 
@@ -177,12 +174,7 @@ def springs_of(
     turning, axes = (part[blocks] for part in _uncoupled(model, bodies))
     masses = np.column_stack([np.repeat(model.masses[blocks, None], d, axis=1), turning])
     per_mass = _per_mass(masses, axes)
-    motion = compatibility(model, joints, strained)
-    if normal is not None and d == 3 and len(joints.integrated):
-        from dem_cli.core.dynamics.pressed_stiffness import drawn_in
-
-        motion = drawn_in(joints, normal) @ motion
-    rows = (_roots(joints, d, closed, gaps) @ motion @ per_mass).tocsr()
+    rows = (_roots(joints, d, closed, gaps) @ compatibility(model, joints, strained) @ per_mass).tocsr()
     held = model.held_columns
     if strained is not None:
         rows, held = vstack([rows, _own_springs(model) @ per_mass]).tocsr(), held_motions(model, True)[blocks].ravel()

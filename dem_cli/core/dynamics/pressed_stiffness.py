@@ -38,34 +38,6 @@ def root_of_stiffness(joints: Joints, overlaps: np.ndarray) -> csr_array:
     return root
 
 
-def drawn_in(joints: Joints, normal: np.ndarray) -> csr_array:
-    """From slides of all points to those with the torsion of a spread pressure, (n_points·d, n_points·d), in space.
-
-    Friction of an elastic face acts nearer to its centre of pressure (contact/corner_forces.py). normal: forces of all
-    points [N], (n_points,); where none presses on a face its areas count.
-    """
-    from scipy.sparse import coo_array, eye_array
-
-    n, owners = len(joints.kn), joints.owners
-    n_joints = len(joints.blocks)
-    pressed = np.bincount(owners, normal, n_joints)
-    weights = np.where(pressed[owners] > 0.0, normal, joints.kn)
-    weights = weights / np.maximum(np.bincount(owners, weights, n_joints), np.finfo(float).tiny)[owners]
-    share = np.where(joints.integrated == INTEGRATED, joints.torsion, 1.0)[owners]
-    counts = np.where(share < 1.0, np.diff(joints.starts)[owners], 0)
-    rows = np.repeat(np.arange(n), counts)
-    firsts = np.repeat(np.cumsum(counts) - counts, counts)
-    columns = joints.starts[owners][rows] + np.arange(len(rows)) - firsts
-    rest, along = (1.0 - share[rows]) * weights[columns], np.array([1, 2])
-    found = coo_array(
-        (np.repeat(rest, 2), ((3 * rows[:, None] + along).ravel(), (3 * columns[:, None] + along).ravel())),
-        shape=(3 * n, 3 * n),
-    )
-    own = eye_array(3 * n).tocsr()
-    own.data = np.column_stack([np.ones(n), share, share]).ravel()
-    return (own + found).tocsr()
-
-
 def _alike(joints: Joints, whole: np.ndarray) -> list[np.ndarray]:
     """Group joints by their number of contact points, in the order of their outlines, (n, count) each.
 

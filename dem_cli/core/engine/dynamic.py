@@ -20,7 +20,6 @@ from dem_cli.core.geometry.inertia import along_principal, gyration, mobilities
 from dem_cli.core.geometry.rotation import along_frames
 from dem_cli.core.kernels import records as slot
 from dem_cli.core.kernels.dashpots import OPEN, STARTS, STICKS
-from dem_cli.core.kernels.deformation.face_dashpots import LETS_GO
 from dem_cli.core.kernels.jit import CompiledKernel
 from dem_cli.core.kernels.records import NO_GAUGES, Dampers, Gauges, Ground, Watch
 from dem_cli.core.kernels.spatial_dashpots import GAINS
@@ -59,6 +58,7 @@ class DynamicSimulation(Simulation):
         if len(model.principal_axes):  # inertia is a tensor, which turns with its block
             self.masses[:, model.rotations] = 0.0
         self.masses[:, model.rotations.stop :] = 0.0  # matrices, in StrainRates
+        properties = properties._replace(integrated=None)  # blocks land on the points of their joints
         super().__init__(model, law, properties, "large", settings=settings)
         self.dead_loads = self.loads.dead.copy()  # before velocities have mean spins
         self.carriers = NO_CARRIERS  # what carried blocks when the motion began (dynamics/supports.py)
@@ -156,7 +156,6 @@ class DynamicSimulation(Simulation):
         joints, contacts, d = self.joints, self.contacts, self.model.dimension
         n = len(joints.kn) if self.damping.in_joints else 0
         of_modes = (n, 2, d, self.model.n_modes) if self.model.n_modes else (0,)
-        faces = n if self.integrates else 0
         self.dampers = Dampers(
             first=self.law.n_memory(d),
             viscosity=self.damping.viscosities(self.model, joints),
@@ -179,15 +178,6 @@ class DynamicSimulation(Simulation):
             strained=self.strained,
             motions=np.zeros(of_modes),
             lifts=np.zeros(of_modes),
-            at_kn=np.zeros(faces),
-            at_ks=np.zeros(faces),
-            at_normal=np.zeros(faces),
-            at_gaps=np.zeros(faces),
-            at_frames=np.zeros((faces, joints.frames.shape[1])),
-            at_levers=np.zeros((faces, joints.levers.shape[1])),
-            at_points=np.zeros((faces, d)),
-            shut=(contacts.gaps[:faces] < 0.0).astype(np.int8),
-            unsettled=np.zeros(len(joints.blocks) if faces else 0, dtype=np.int8),
         )
 
     def _trifles(self) -> np.ndarray:
@@ -200,11 +190,7 @@ class DynamicSimulation(Simulation):
         if not self.real:
             return super().forces_on_second()
         contacts, d = self.contacts, self.model.dimension
-        normal = contacts.normal
-        if self.integrates and self.damping.in_joints:
-            goes = (self.dampers.unsettled & LETS_GO > 0)[self.joints.owners]
-            normal = np.where(goes, self.dampers.at_normal, normal)
-        forces = np.column_stack([normal, contacts.shear])
+        forces = np.column_stack([contacts.normal, contacts.shear])
         if self.damping.in_joints:
             first, memory = self.dampers.first, contacts.memory
             forces += memory[:, first : first + d] / self.dt
@@ -303,7 +289,7 @@ class DynamicSimulation(Simulation):
     def _compiled_shake(self) -> CompiledKernel:
         return compiled_shake(
             self.law, self.properties.profiled, self.damping.in_joints, self.model.dimension, self.kinds_of_links,
-            self.order_within_blocks, self.integrates,
+            self.order_within_blocks,
         )  # fmt: skip
 
     # -- energy ------------------------------------------------------------------------------------

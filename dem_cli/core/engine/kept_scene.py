@@ -38,8 +38,7 @@ _ROWS: dict[str, dict[str, str]] = {  # fields of records by how many rows they 
     "Contacts": {"points": "gaps shear normal slip memory closure", "ends": "stale", "points?": "lumped"},
     "Dampers": {
         "joints": "viscosity lasts rooms awake met", "ends": "packed active",
-        "points?": "rates gains holders slips states motions lifts at_kn at_ks at_normal at_gaps at_frames at_levers "
-        "at_points shut", "joints?": "unsettled",
+        "points?": "rates gains holders slips states motions lifts",
     },
 }  # fmt: skip
 _NUMBERS: dict[str, dict[str, str]] = {  # fields by what their numbers are of; with "!" the number of all is one, too

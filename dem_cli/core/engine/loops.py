@@ -108,18 +108,17 @@ def compiled_shake(
     dimension: int = 2,
     links: tuple[str, ...] = (),
     order: int = RIGID,
-    elastic: bool = False,
 ):
     """Build the stepping loop of time histories, as compiled_advance; compiled at its first call."""
-    flags = {"keeps": damped, "meets": True, "elastic": elastic}
+    flags = {"keeps": damped, "meets": True}
     if order == QUADRATIC:
         forces = make_profiled_forces(law.function, law.bonded, strains=True, bends=True, **flags)
-        return make_shake(forces, drift_bent_corners, damped, strains=True, bends=True, elastic=elastic)
+        return make_shake(forces, drift_bent_corners, damped, strains=True, bends=True)
     if order == LINEAR:
         forces = FORCES[dimension](law, profiled, strains=True, **flags)
-        return make_shake(forces, DRIFTS[dimension].strained_in_time, damped, strains=True, elastic=elastic)
+        return make_shake(forces, DRIFTS[dimension].strained_in_time, damped, strains=True)
     forces = FORCES[dimension](law, profiled, **flags)
-    return make_shake(forces, DRIFTS[dimension].in_time, damped, _pull(links, True), elastic=elastic)
+    return make_shake(forces, DRIFTS[dimension].in_time, damped, _pull(links, True))
 
 
 def _pull(links: tuple[str, ...], moves: bool) -> Callable | None:

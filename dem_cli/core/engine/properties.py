@@ -45,15 +45,6 @@ def integrates_with(request: SolverRequest, kinematics: str) -> bool:
     return kinematics != "fixed" or not request.analysis.searches
 
 
-def lands_on_ends(request: SolverRequest) -> bool:
-    """Test whether joints of a given stiffness have points at their ends in a time history, as stiff ones have.
-
-    They do where a restitution is asked for: it is that of a block that lands on an edge. Where the blow is spread
-    over a face blocks lose less, however stiff it is (docs/rocking.md).
-    """
-    return request.damping.restitution is not None
-
-
 def joint_properties(
     request: SolverRequest,
     model: Model,
@@ -67,9 +58,9 @@ def joint_properties(
     Blocks of a material with a Young's modulus give way in their joints (contact/block_compliance.py).
 
     step: time step [s] that velocities in a law refer to; infinite where time has no meaning: all motion is slow.
-    lands: whether blocks land on each other, so that joints whose stiffness is a means keep the points at their ends;
-    None: in time histories.
-    integrates: whether the pressure on elastic joints is integrated over their faces.
+    lands: whether blocks land on each other, so that joints keep the points at their ends; None: in time histories.
+    integrates: whether the pressure on elastic joints is integrated over their faces. Not where blocks land, in any
+    case: a face that takes the blow as a whole does not lose what Housner's block does.
     """
     asked = request.joints
     names, by_material, heads = tuple(asked.named), asked.by_material, asked.heads
@@ -92,13 +83,11 @@ def joint_properties(
     deforming = _with_deforming_blocks(model, lying, compliance, np.flatnonzero(bending))
     bent = set(lying[:, np.flatnonzero(bending)].ravel().tolist())  # two points cannot tell how a block bends
     lands = request.in_seconds if lands is None else lands
-    on_ends = lands and lands_on_ends(request)
-    integrates = integrates and not on_ends
+    integrates = integrates and not lands
     integrated = np.array([integrates and table.integrates and k not in bent for k, table in enumerate(tables)])
-    given = [k in deforming or table.kn != "auto" for k, table in enumerate(tables)]
-    ends = [lands and k not in bent and (on_ends or not given[k]) for k in range(len(tables))]
     layouts = tuple(
-        None if integrated[k] and given[k] else _layout(table, asked, k in deforming, ends[k])
+        None if integrated[k] and (k in deforming or table.kn != "auto")
+        else _layout(table, asked, k in deforming, lands and k not in bent)
         for k, table in enumerate(tables)
     )  # fmt: skip
     spread = [

@@ -123,15 +123,15 @@ def waken(joints, dampers, n_active, turn):
 
 
 @inline
-def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, seats, dt, like, like_rotation):
+def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
     """Determine states of all points before the kick; rows of `gains` for those that touch, of joint j from packed[j]
     on.
 
     Puts the impulses of the step before, as far as they may go on, into `pushes`, and adds the forces of Maxwell
     elements to `forces`. Returns how many points have met.
     """
-    blocks, starts, kns, kss, frames = joints.blocks, joints.starts, seats.kn, seats.ks, seats.frames
-    normals, memory, slips = seats.normal, contacts.memory, contacts.slip
+    blocks, starts, kns, kss, frames = joints.blocks, joints.starts, joints.kn, joints.ks, joints.frames
+    normals, memory, slips = contacts.normal, contacts.memory, contacts.slip
     positions, velocities = bodies.positions, bodies.velocities
     viscosity, rates, rows, holders = dampers.viscosity, dampers.rates, dampers.gains, dampers.holders
     states, seen, first, pushes = dampers.states, dampers.slips, dampers.first, dampers.pushes
@@ -165,7 +165,7 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, seats, dt, 
             met, closed = touch(states, seen, slips, point)
             slipping = states[point] == SLIPS
             frame = load_frame(frames, point, like)
-            reach_a, reach_b = reach_of(seats, point, 0, xa, like), reach_of(seats, point, 1, xb, like)
+            reach_a, reach_b = reach_of(joints, point, 0, xa, like), reach_of(joints, point, 1, xb, like)
             put_motions(motions, lifts, dampers.strained, bodies, point, 0, a, arm_of(frame, reach_a))
             put_motions(motions, lifts, dampers.strained, bodies, point, 1, b, arm_of(frame, reach_b))
             moved = plus_modes(motions, velocities, point, a, b, relative)
@@ -175,7 +175,7 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, seats, dt, 
                 n_met += 1
                 dampers.met[joint] = 1
             if met and opening * dt < 0.0:  # it closed a while ago, and acts for half a step from now
-                closed = closed_share(seats.gaps[point], opening, dt)
+                closed = closed_share(contacts.gaps[point], opening, dt)
                 share = 0.5 + closed
             if half > 0.0:
                 weight, least = share * half, least_of(normals[point], dt)
@@ -204,7 +204,7 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, seats, dt, 
                 rates[point, 0] = opening
                 store(rates, point, 1, sliding)
                 stiffness, reaches = (kns[point], kss[point]), (reach_a, reach_b)
-                pull(elements, contacts, bodies, dampers, seats, a, b, point, frame, reaches, stiffness, closed, like)
+                pull(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like)
         store(pushes, a, 0, pushed_a)
         store(pushes, a, d, turned_a)
         store(pushes, b, 0, pushed_b)
@@ -214,24 +214,24 @@ def meet_in_plane(joints, contacts, bodies, inverse_masses, dampers, seats, dt, 
     return n_met
 
 
-def pull(elements, contacts, bodies, dampers, seats, a, b, point, frame, reaches, stiffness, closed, like):
+def pull(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like):
     """Add forces of the Maxwell elements of a point after the step before to its blocks; none: not compiled."""
     if elements.ndim > 1:
-        _pull(elements, contacts, bodies, dampers, seats, a, b, point, frame, reaches, stiffness, closed, like)
+        _pull(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like)
 
 
 @overload(pull)
-def _pulled(elements, contacts, bodies, dampers, seats, a, b, point, frame, reaches, stiffness, closed, like):
+def _pulled(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like):
     if elements.ndim > 1:
         return _pull
-    return lambda elements, contacts, bodies, dampers, seats, a, b, point, frame, reaches, stiffness, closed, like: None
+    return lambda elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like: None
 
 
 @inline
-def _pull(elements, contacts, bodies, dampers, seats, a, b, point, frame, reaches, stiffness, closed, like):
+def _pull(elements, contacts, bodies, dampers, a, b, point, frame, reaches, stiffness, closed, like):
     """Add forces of the Maxwell elements of a point after the step before to those of its blocks."""
     first, memory, forces, d = dampers.first, contacts.memory, bodies.forces, len(like)
-    state, pressed = dampers.states[point], seats.normal[point]
+    state, pressed = dampers.states[point], contacts.normal[point]
     _relax(memory, dampers.rates, elements, state, pressed, stiffness, closed, point, first, d)
     normal, shear = 0.0, scale(0.0, like[1:])
     for e in range(elements.shape[0]):
@@ -358,23 +358,23 @@ def resist_in_plane(joints, contacts, bodies, inverse_masses, dampers, dt, turns
     turns_in_plane(joints, contacts, bodies, inverse_masses, dampers, turns, like, like_rotation)
 
 
-def book_elements(elements, joints, contacts, bodies, dampers, seats, dt, ledger, like, like_rotation):
+def book_elements(elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation):
     """Add the work of Maxwell elements in this step to the ledger, by the mean rates over it; none: not compiled."""
     if elements.ndim > 1:
-        _book_elements(elements, joints, contacts, bodies, dampers, seats, dt, ledger, like, like_rotation)
+        _book_elements(elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation)
 
 
 @overload(book_elements)
-def _booked(elements, joints, contacts, bodies, dampers, seats, dt, ledger, like, like_rotation):
+def _booked(elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation):
     if elements.ndim > 1:
         return _book_elements
-    return lambda elements, joints, contacts, bodies, dampers, seats, dt, ledger, like, like_rotation: None
+    return lambda elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation: None
 
 
 @inline
-def _book_elements(elements, joints, contacts, bodies, dampers, seats, dt, ledger, like, like_rotation):
+def _book_elements(elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation):
     """Add the work of Maxwell elements in this step to the ledger."""
-    blocks, starts, frames, memory = joints.blocks, joints.starts, seats.frames, contacts.memory
+    blocks, starts, frames, memory = joints.blocks, joints.starts, joints.frames, contacts.memory
     positions, velocities = bodies.positions, bodies.velocities
     rates, states, first, n_elements = dampers.rates, dampers.states, dampers.first, elements.shape[0]
     d, taken = len(like), 0.0
@@ -388,8 +388,8 @@ def _book_elements(elements, joints, contacts, bodies, dampers, seats, dt, ledge
             spin_a, spin_b = load(velocities, a, d, like_rotation), load(velocities, b, d, like_rotation)
             relative = axpy(-1.0, load(velocities, a, 0, like), load(velocities, b, 0, like))
             relative = plus_modes(dampers.motions, velocities, point, a, b, relative)
-            reach_a = reach_of(seats, point, 0, load(positions, a, 0, like), like)
-            reach_b = reach_of(seats, point, 1, load(positions, b, 0, like), like)
+            reach_a = reach_of(joints, point, 0, load(positions, a, 0, like), like)
+            reach_b = reach_of(joints, point, 1, load(positions, b, 0, like), like)
             opening, sliding = rates_at(load_frame(frames, point, like), reach_a, reach_b, relative, spin_a, spin_b)
             opening = 0.5 * (opening + rates[point, 0])
             sliding = scale(0.5, axpy(1.0, load(rates, point, 1, sliding), sliding))
@@ -400,11 +400,11 @@ def _book_elements(elements, joints, contacts, bodies, dampers, seats, dt, ledge
 
 
 @inline
-def book_supports(joints, contacts, bodies, old, inverse_masses, dampers, seats, ledger, like, like_rotation):
+def book_supports(joints, contacts, bodies, old, inverse_masses, dampers, ledger, like, like_rotation):
     """Add the work of moving supports through dashpots to the ledger: theirs, and what is lost there. old: velocities
     before the step.
     """
-    blocks, starts, frames, memory = joints.blocks, joints.starts, seats.frames, contacts.memory
+    blocks, starts, frames, memory = joints.blocks, joints.starts, joints.frames, contacts.memory
     positions, velocities = bodies.positions, bodies.velocities
     states, first, d, work = dampers.states, dampers.first, len(like), 0.0
     for number in range(blocks.shape[0]):
@@ -422,8 +422,8 @@ def book_supports(joints, contacts, bodies, old, inverse_masses, dampers, seats,
             point = np.uint64(p)
             if states[point] == OPEN:
                 continue
-            reach_a = reach_of(seats, point, 0, load(positions, a, 0, like), like)
-            reach_b = reach_of(seats, point, 1, load(positions, b, 0, like), like)
+            reach_a = reach_of(joints, point, 0, load(positions, a, 0, like), like)
+            reach_b = reach_of(joints, point, 1, load(positions, b, 0, like), like)
             opening, sliding = rates_at(load_frame(frames, point, like), reach_a, reach_b, relative, spin_a, spin_b)
             work -= memory[point, first] * opening + dot(load(memory, point, first + 1, sliding), sliding)
     ledger[SUPPORT] += work

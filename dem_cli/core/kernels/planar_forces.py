@@ -13,10 +13,10 @@ import numpy as np
 from dem_cli.core.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart, swing
 from dem_cli.core.kernels.deformation.joint_spread import spread_between
 from dem_cli.core.kernels.deformation.matrices import load_matrix
-from dem_cli.core.kernels.deformation.pressed_faces import line_gaps, meeting_share, rubbing_together
+from dem_cli.core.kernels.deformation.pressed_faces import line_gaps, rubbing_together
 from dem_cli.core.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.core.kernels.jit import inline, named
-from dem_cli.core.kernels.planar_geometry import apart, keep_end, overlap_of, place_end, refresh_lengths
+from dem_cli.core.kernels.planar_geometry import apart, overlap_of, place_end, refresh_lengths
 from dem_cli.core.kernels.records import INTEGRATED
 from dem_cli.core.kernels.vec import axpy, compose, load, scale, sliding
 
@@ -44,6 +44,7 @@ def make_planar_forces(
     def planar_forces(joints, geometry, contacts, bodies, dt, like, like_rotation):
         """Add the forces of all joints on their blocks to `forces`; returns the friction work [J]."""
         blocks, starts, edges, scales = joints.blocks, joints.starts, geometry.edges, geometry.scales
+        frames, levers = joints.frames, joints.levers
         gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
         stretchings, d = bodies.stretchings, len(like)
@@ -75,10 +76,7 @@ def make_planar_forces(
             gaps[second] = gap_high
             whole = elastic and joints.integrated[joint] == INTEGRATED
             if whole:
-                together = meeting_share(min(gap_low, gap_high), opened_low if gap_low < gap_high else opened_high)
                 gap_low, gap_high = line_gaps(gap_low, gap_high)
-                if meets:
-                    gap_low, gap_high = together * gap_low, together * gap_high
             elif meets and not bonded:
                 gap_low, gap_high = meeting(gap_low, opened_low), meeting(gap_high, opened_high)
             if rigid and not wrong and not whole:
@@ -98,17 +96,16 @@ def make_planar_forces(
             if elastic:
                 low = place_end(xa, xb, share_low, true_low, ta, tb, a0, b1)
                 high = place_end(xa, xb, share_high, true_high, ta, tb, a1, b0)
-                if whole and keeps:
-                    keep_end(joints, first, low)
-                    keep_end(joints, second, high)
                 if whole:
                     low, high = rubbing_together(low, high, gap_low, gap_high)
             if on_low:
                 if not elastic:
                     low = place_end(xa, xb, share_low, true_low, ta, tb, a0, b1)
                 frame, levers_a, levers_b, place = low
-                if keeps and not whole:
-                    keep_end(joints, first, low)
+                if keeps:
+                    frames[first, 0], frames[first, 1] = frame[0]
+                    levers[first, 0], levers[first, 1] = levers_a[0][0], levers_a[1][0]
+                    levers[first, 2], levers[first, 3] = levers_b[0][0], levers_b[1][0]
                 slide = sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt)
                 if strains:
                     arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)
@@ -129,8 +126,10 @@ def make_planar_forces(
                 if not elastic:
                     high = place_end(xa, xb, share_high, true_high, ta, tb, a1, b0)
                 frame, levers_a, levers_b, place = high
-                if keeps and not whole:
-                    keep_end(joints, second, high)
+                if keeps:
+                    frames[second, 0], frames[second, 1] = frame[0]
+                    levers[second, 0], levers[second, 1] = levers_a[0][0], levers_a[1][0]
+                    levers[second, 2], levers[second, 3] = levers_b[0][0], levers_b[1][0]
                 slide = sliding(frame, levers_a, levers_b, relative, spin_a, spin_b, dt)
                 if strains:
                     arm_a, arm_b = axpy(-1.0, xa, place), axpy(-1.0, xb, place)

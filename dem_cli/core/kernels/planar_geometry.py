@@ -132,21 +132,15 @@ def apart(overlap, gap_low, gap_high, a0, a1, b0, b1, tb, scales, joint):
     return min(behind_a, 0.0) ** 2 + min(behind_b, 0.0) ** 2 >= other
 
 
-@always_inline
-def keep_end(joints, point, end):
-    """Write frame and levers of an end into the arrays of the joints."""
-    frame, levers_a, levers_b, _ = end
-    frames, levers = joints.frames, joints.levers
-    frames[point, 0], frames[point, 1] = frame[0]
-    levers[point, 0], levers[point, 1] = levers_a[0][0], levers_a[1][0]
-    levers[point, 2], levers[point, 3] = levers_b[0][0], levers_b[1][0]
-
-
 @inline
 def _write_end(joints, point, end):
     """Write frame, levers and place of an end into the arrays of the joints."""
-    joints.points[point, 0], joints.points[point, 1] = end[3]
-    keep_end(joints, point, end)
+    frame, levers_a, levers_b, place = end
+    frames, levers, points = joints.frames, joints.levers, joints.points
+    frames[point, 0], frames[point, 1] = frame[0]
+    points[point, 0], points[point, 1] = place
+    levers[point, 0], levers[point, 1] = levers_a[0][0], levers_a[1][0]
+    levers[point, 2], levers[point, 3] = levers_b[0][0], levers_b[1][0]
 
 
 @kernel

@@ -17,11 +17,11 @@ import numpy as np
 from dem_cli.core.kernels.contact_point import add_force, jolt, make_press, meeting, push_apart, swing
 from dem_cli.core.kernels.deformation.joint_spread import spread_between
 from dem_cli.core.kernels.deformation.matrices import load_matrix
-from dem_cli.core.kernels.deformation.pressed_faces import line_gaps, meeting_share, rubbing_together
+from dem_cli.core.kernels.deformation.pressed_faces import line_gaps, rubbing_together
 from dem_cli.core.kernels.deformation.quadratic import apart_at, bend_apart, line_apart, with_force
 from dem_cli.core.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.core.kernels.jit import always_inline, inline, kernel, named
-from dem_cli.core.kernels.planar_geometry import apart, keep_end, place_end, refresh_lengths, share_of, sharper
+from dem_cli.core.kernels.planar_geometry import apart, place_end, refresh_lengths, share_of, sharper
 from dem_cli.core.kernels.records import INTEGRATED
 from dem_cli.core.kernels.vec import axpy, compose, load, scale, sliding
 
@@ -85,7 +85,7 @@ def make_profiled_forces(
         blocks, starts, edges, scales, profile = (
             joints.blocks, joints.starts, geometry.edges, geometry.scales, geometry.profile
         )  # fmt: skip
-        places_out = joints.points
+        frames, levers, places_out = joints.frames, joints.levers, joints.points
         gaps, normals, stale, closures = contacts.gaps, contacts.normal, contacts.stale, contacts.closure
         sunk = geometry.sunk
         velocities, forces, positions, corners = bodies.velocities, bodies.forces, bodies.positions, bodies.corners
@@ -161,17 +161,8 @@ def make_profiled_forces(
             if elastic:
                 low_end = place_end(xa, xb, share_low, gap_low, ta, side_low, a0, corner_low)
                 high_end = place_end(xa, xb, share_high, gap_high, ta, side_high, a1, corner_high)
-                if whole and keeps:
-                    keep_end(joints, first, low_end)
-                    keep_end(joints, last, high_end)
                 if whole:
                     end_low, end_high = line_gaps(gap_low + offset, gap_high + offset)
-                if whole and meets:
-                    at_end = first if gap_low < gap_high else last
-                    deepest = min(gap_low, gap_high) + offset
-                    together = meeting_share(deepest, deepest - gaps[at_end])
-                    end_low, end_high = together * end_low, together * end_high
-                if whole:
                     low_end, high_end = rubbing_together(low_end, high_end, end_low, end_high)
             loaded = False
             for p in range(first, last + 1):
@@ -212,8 +203,10 @@ def make_profiled_forces(
                 frame, levers_a, levers_b, place = place_end(xa, xb, share, depth, ta, side, corner_a, corner_b)
                 if whole:
                     frame, levers_a, levers_b, place = low_end if p == first else high_end
-                if places or (keeps and not whole):
-                    keep_end(joints, point, (frame, levers_a, levers_b, place))
+                if keeps or places:
+                    frames[point, 0], frames[point, 1] = frame[0]
+                    levers[point, 0], levers[point, 1] = levers_a[0][0], levers_a[1][0]
+                    levers[point, 2], levers[point, 3] = levers_b[0][0], levers_b[1][0]
                 if places:
                     places_out[point, 0], places_out[point, 1] = place
                     continue

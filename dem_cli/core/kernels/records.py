@@ -306,28 +306,6 @@ class Dampers(NamedTuple):
     strained: StrainRates
     motions: np.ndarray  # of points by rates of modes of both blocks [-], (n_points, 2, d, m); of rigid blocks: (0,)
     lifts: np.ndarray  # rates of modes by impulses there [1/kg], of the same shape
-    # Where there are elastic faces (kernels/deformation/face_dashpots.py), else empty: `Seats` of all points ...
-    at_kn: np.ndarray
-    at_ks: np.ndarray
-    at_normal: np.ndarray
-    at_gaps: np.ndarray
-    at_frames: np.ndarray
-    at_levers: np.ndarray
-    at_points: np.ndarray
-    shut: np.ndarray  # ... 1: the point itself is closed, (n_points,) int8
-    unsettled: np.ndarray  # and of each joint, what has changed about its face, (n_joints,) int8
-
-
-class Seats(NamedTuple):
-    """Where dashpots and Maxwell elements act, point by point: at contact points, or over what is pressed of a face."""
-
-    kn: np.ndarray  # normal stiffness behind a dashpot [N/m], (n_points,)
-    ks: np.ndarray  # shear stiffness [N/m], (n_points,)
-    normal: np.ndarray  # what presses there [N], 0: no dashpot, (n_points,)
-    gaps: np.ndarray  # gaps there [m], (n_points,)
-    frames: np.ndarray  # as MovingJoints, and the next two
-    levers: np.ndarray
-    points: np.ndarray
 
 
 NO_LINKS = np.zeros((0, 0, 3))

@@ -15,7 +15,6 @@ import numpy as np
 
 from dem_cli.core.kernels.advance import local_drag
 from dem_cli.core.kernels.dashpots import book_elements, book_supports
-from dem_cli.core.kernels.deformation.face_dashpots import let_go, seat_dashpots, stir_faces
 from dem_cli.core.kernels.deformation.quadratic import bend, resist_bending
 from dem_cli.core.kernels.deformation.strain_rates import (
     book_modes,
@@ -48,7 +47,6 @@ from dem_cli.core.kernels.records import (
     TRAVEL_LIMIT,
     TURN,
     UNBALANCED,
-    Seats,
 )
 from dem_cli.core.kernels.spatial_dashpots import meet, resist
 from dem_cli.core.kernels.spin import add_gyration, add_spin_powers, kick_spins, rotation
@@ -257,12 +255,10 @@ def make_shake(
     link_forces: Callable | None = None,
     strains: bool = False,
     bends: bool = False,
-    elastic: bool = False,
 ) -> Callable:
     """Make the compiled time-history loop for one contact loop and the links of the model.
 
     damped: with dashpots or Maxwell elements in the joints; strains: blocks deform; bends: in quadratic modes as well.
-    elastic: there are faces over which pressure is integrated (kernels/deformation/pressed_faces.py).
     """
     linked, pull = link_forces is not None, link_forces or contact_forces  # what is not called is compiled away
 
@@ -280,16 +276,6 @@ def make_shake(
         damp, rate, n_dof = control[DAMP], control[MASS_RATE], velocities.shape[1]
         gauges, looks = watch.gauges, watch.gauges.tally.shape[0] > 0
         n_moving, n_given = ground.moving.shape[0], ground.velocities.shape[2]
-        if damped:
-            if elastic:
-                seats = Seats(
-                    dampers.at_kn, dampers.at_ks, dampers.at_normal, dampers.at_gaps, dampers.at_frames,
-                    dampers.at_levers, dampers.at_points,
-                )  # fmt: skip
-            else:
-                seats = Seats(
-                    joints.kn, joints.ks, contacts.normal, contacts.gaps, joints.frames, joints.levers, joints.points
-                )  # fmt: skip
         done = 0
         for step in range(first, first + n_steps):
             forces[:] = 0.0
@@ -305,11 +291,7 @@ def make_shake(
             if strains:
                 resist_in_time(bodies, shape, strained, like, like_rotation)
             if damped:
-                if elastic:
-                    seat_dashpots(joints, contacts, dampers, seats, bodies, like)
-                met = meet(joints, contacts, bodies, inverse_masses, dampers, seats, dt, like, like_rotation)
-                if elastic:
-                    met += stir_faces(dampers)
+                met = meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation)
             _kick(
                 velocities, forces, unbalanced, dead_loads, inverse_masses, dampers.masses, bodies.mobilities, means,
                 drags, pulled, ground.accelerations[step], damp, rate, dt, like, like_rotation,
@@ -321,16 +303,14 @@ def make_shake(
                     velocities[ground.moving[j], k] = ground.velocities[step, j, k]
             if damped:
                 turns = TURNS_OF_IMPACT if met > 0 else 1
-                if elastic:
-                    let_go(joints, contacts, bodies, inverse_masses, dampers, seats, dt, like, like_rotation)
                 resist(joints, contacts, bodies, inverse_masses, dampers, dt, turns, like, like_rotation)
                 book_elements(
-                    dampers.elements, joints, contacts, bodies, dampers, seats, dt, ledger, like, like_rotation
+                    dampers.elements, joints, contacts, bodies, dampers, dt, ledger, like, like_rotation
                 )  # fmt: skip
                 if n_moving > 0:
                     old = shaped_as(means, velocities)
                     book_supports(
-                        joints, contacts, bodies, old, inverse_masses, dampers, seats, ledger, like, like_rotation
+                        joints, contacts, bodies, old, inverse_masses, dampers, ledger, like, like_rotation
                     )  # fmt: skip
             if strains:
                 book_modes(bodies, shape, strained, rate, dt, ledger)
@@ -369,6 +349,5 @@ def make_shake(
         *((link_forces,) if link_forces is not None else ()),
         *["strains"] * strains,
         *["bends"] * bends,
-        *["elastic"] * elastic,
     )
     return shake

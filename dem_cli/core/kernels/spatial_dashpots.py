@@ -43,17 +43,17 @@ WIDTH = 18
 GAINS = {2: PLANAR_WIDTH, 3: WIDTH}  # columns by dimension
 
 
-def meet(joints, contacts, bodies, inverse_masses, dampers, seats, dt, like, like_rotation):
+def meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
     """Determine states and gains of all points before the kick, and the impulses before; returns how many have met."""
     found = meet_in_plane if len(like) == 2 else meet_in_space
-    return found(joints, contacts, bodies, inverse_masses, dampers, seats, dt, like, like_rotation)
+    return found(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation)
 
 
 @overload(meet)
-def _meet(joints, contacts, bodies, inverse_masses, dampers, seats, dt, like, like_rotation):
+def _meet(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
     found = meet_in_plane if len(like) == 2 else meet_in_space
-    return lambda joints, contacts, bodies, inverse_masses, dampers, seats, dt, like, like_rotation: found(
-        joints, contacts, bodies, inverse_masses, dampers, seats, dt, like, like_rotation
+    return lambda joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation: found(
+        joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation
     )
 
 
@@ -146,7 +146,7 @@ def given_up(rows, row, normal, impulse, rate):
 
 
 @always_inline
-def _goes_on(joints, contacts, dampers, seats, joint):
+def _goes_on(joints, contacts, dampers, joint):
     """Test whether the rows of a joint are still valid: geometry is held, the same points touch, stick and slip.
 
     Points that have met in the step before act for all of this one.
@@ -157,7 +157,7 @@ def _goes_on(joints, contacts, dampers, seats, joint):
     for row in range(first, last):
         point = np.uint64(dampers.holders[row])
         state = STICKS if contacts.slip[point] == dampers.slips[point] else SLIPS
-        if seats.normal[point] == 0.0 or states[point] != state:
+        if contacts.normal[point] == 0.0 or states[point] != state:
             return False
     return True
 
@@ -189,7 +189,7 @@ def _first_row(joints, dampers, joint):
 
 
 @always_inline
-def _push_on(joints, contacts, bodies, dampers, seats, dt, joint, a, b, like):
+def _push_on(joints, contacts, bodies, dampers, dt, joint, a, b, like):
     """Apply impulses of rows that go on, as far as they may, to the blocks."""
     rows, holders, slips, seen = dampers.gains, dampers.holders, contacts.slip, dampers.slips
     pushed, turned = scale(0.0, like), scale(0.0, like)
@@ -198,7 +198,7 @@ def _push_on(joints, contacts, bodies, dampers, seats, dt, joint, a, b, like):
         point = np.uint64(holders[row])
         seen[point] = slips[point]
         normal, impulse = load(rows, row, NORMAL, like), load(rows, row, IMPULSE, like)
-        least = least_of(seats.normal[point], dt)
+        least = least_of(contacts.normal[point], dt)
         rows[row, LEAST] = least
         short = least - dot(normal, impulse)
         if short > 0.0:
@@ -214,12 +214,12 @@ def _push_on(joints, contacts, bodies, dampers, seats, dt, joint, a, b, like):
 
 
 @inline
-def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, seats, dt, like, like_rotation):
+def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, dt, like, like_rotation):
     """Determine states and gains of all points in space before the kick; rows of joint j from packed[j] up to lasts[j].
     Those that go on are not made anew.
     """
-    blocks, starts, kns, kss, frames = joints.blocks, joints.starts, seats.kn, seats.ks, seats.frames
-    normals, memory, slips = seats.normal, contacts.memory, contacts.slip
+    blocks, starts, kns, kss, frames = joints.blocks, joints.starts, joints.kn, joints.ks, joints.frames
+    normals, memory, slips = contacts.normal, contacts.memory, contacts.slip
     positions, velocities = bodies.positions, bodies.velocities
     viscosity, rates, rows, holders = dampers.viscosity, dampers.rates, dampers.gains, dampers.holders
     states, seen, first, pushes = dampers.states, dampers.slips, dampers.first, dampers.pushes
@@ -230,9 +230,9 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, seats, dt, 
     for number in range(blocks.shape[0]):
         joint = np.uint64(number)
         a, b = np.uint64(blocks[joint, 0]), np.uint64(blocks[joint, 1])
-        if elements.shape[0] == 0 and _goes_on(joints, contacts, dampers, seats, joint):
+        if elements.shape[0] == 0 and _goes_on(joints, contacts, dampers, joint):
             if lasts[joint] > packed[joint]:
-                _push_on(joints, contacts, bodies, dampers, seats, dt, joint, a, b, like)
+                _push_on(joints, contacts, bodies, dampers, dt, joint, a, b, like)
                 dampers.active[n_active] = number
                 n_active += 1
             continue
@@ -253,7 +253,7 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, seats, dt, 
                 continue
             touched = True
             met, closed = touch(states, seen, slips, point)
-            frame, place = load_frame(frames, point, like), load(seats.points, point, 0, like)
+            frame, place = load_frame(frames, point, like), load(joints.points, point, 0, like)
             arms = (axpy(-1.0, xa, place), axpy(-1.0, xb, place))
             put_motions(motions, lifts, dampers.strained, bodies, point, 0, a, arms[0])
             put_motions(motions, lifts, dampers.strained, bodies, point, 1, b, arms[1])
@@ -267,7 +267,7 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, seats, dt, 
                     n_met += 1
                     dampers.met[joint] = 1
                 if met and opening * dt < 0.0:
-                    closed = closed_share(seats.gaps[point], opening, dt)
+                    closed = closed_share(contacts.gaps[point], opening, dt)
                     share = 0.5 + closed
             if half > 0.0:
                 slipping, least = states[point] == SLIPS, least_of(normals[point], dt)
@@ -289,7 +289,7 @@ def meet_in_space(joints, contacts, bodies, inverse_masses, dampers, seats, dt, 
                 turned_b = axpy(1.0, moment(arms[1], impulse), turned_b)
             if elements.shape[0] > 0:
                 stiffness = (kns[point], kss[point])
-                pull(elements, contacts, bodies, dampers, seats, a, b, point, frame, arms, stiffness, closed, like)
+                pull(elements, contacts, bodies, dampers, a, b, point, frame, arms, stiffness, closed, like)
         if touched:
             add_at(pushes, a, 0, pushed, -1.0)
             add_at(pushes, b, 0, pushed, 1.0)

@@ -14,7 +14,7 @@ import numpy as np
 
 from dem_cli.core.kernels.contact_point import jolt, make_press, meeting, push_apart, swing
 from dem_cli.core.kernels.deformation.matrices import load_matrix, times
-from dem_cli.core.kernels.deformation.pressed_faces import fan_out, meeting_share, share_pressure
+from dem_cli.core.kernels.deformation.pressed_faces import fan_out, share_pressure
 from dem_cli.core.kernels.deformation.uniform_strain import stretch_apart
 from dem_cli.core.kernels.jit import always_inline, inline, kernel, named
 from dem_cli.core.kernels.joint_plane import LEAST_PUSH, moment, sweep
@@ -116,9 +116,10 @@ def make_spatial_forces(
     meets: in time histories; geometry is held there while blocks hardly move. rigid: as in planar_forces.py.
     remembers: numbers of a point's memory that belong to the law. capped: joints may have caps. strains: blocks deform
     (kernels/deformation); their faces stay plane, and geometry is measured in each step. elastic: there are faces over
-    which pressure is integrated (kernels/deformation/pressed_faces.py).
+    which pressure is integrated (kernels/deformation/pressed_faces.py), in statics.
     """
     assert remembers <= MOST_LEFT
+    assert not (elastic and meets)
     press, holds, books = make_press(law, bonded), meets and not strains, rigid and not bonded
 
     @inline
@@ -144,24 +145,8 @@ def make_spatial_forces(
             if strains:
                 gradient_a, gradient_b = load_matrix(stretchings, a, like), load_matrix(stretchings, b, like)
             whole = elastic and joints.integrated[joint] == INTEGRATED
-            together = 1.0
             if whole:
-                deepest, opened = 0.0, 0.0
-                if held:
-                    for p in range(starts[joint], starts[number + 1]):
-                        point = np.uint64(p)
-                        if stiffness[point] > 0.0:
-                            place = axpy(dt, va, load(places, point, 0, like))
-                            swept = axpy(-1.0, sweep(spin_a, axpy(-1.0, xa, place)), relative)
-                            moved = axpy(1.0, sweep(spin_b, axpy(-1.0, xb, place)), swept)
-                            geometry.opened[point] = dt * dot(moved, load_frame(frames, point, like)[0])
-                            gaps[point] += geometry.opened[point]
-                else:
-                    fan_out(joints, number)
-                for p in range(starts[joint], starts[number + 1]):
-                    if meets and stiffness[p] > 0.0 and gaps[p] < deepest:
-                        deepest, opened = gaps[p], geometry.opened[p]
-                together = meeting_share(deepest, opened)
+                fan_out(joints, number)
                 share_pressure(joints, contacts, number)
             share, rub, middle, centre = joints.torsion[joint], scale(0.0, like), scale(0.0, like), xa
             if share != 1.0:
@@ -185,12 +170,12 @@ def make_spatial_forces(
                     moved = axpy(1.0, axpy(-1.0, times(gradient_a, arm_a), times(gradient_b, arm_b)), moved)
                 if held:
                     opened = dt * dot(moved, frame[0])
-                    gap = gaps[point] if whole else gaps[point] + opened
+                    gap = gaps[point] + opened
                     gaps[point] = gap
                 else:
                     opened, gap = geometry.opened[point], gaps[point]
                 if whole:
-                    gap = together * contacts.lumped[point]
+                    gap = contacts.lumped[point]
                 elif meets and not bonded:
                     gap = meeting(gap, opened)
                 if rigid and not whole:

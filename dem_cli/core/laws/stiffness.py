@@ -41,10 +41,9 @@ class StiffJoint(Parameters):
         description="contact points of a plane joint: so many, at Gauss-Lobatto places; in 3D so many along each side "
         "of the area of contact, or at its vertices alone, or at its centre as well; section: 16, in 3D 57, with "
         "which a joint that cracks or is crushed is as strong in bending as its whole section; default: section where "
-        "the joint has tension, cohesion or compression; else 2, in 3D vertices, with the pressure integrated over the "
-        "closed part where kn is given or blocks deform (materials.NAME.young), and where it is elastic 3, in 3D "
-        "vertices+centre; in time histories where kn is 'auto' or damping.restitution is given 2, in 3D vertices, and "
-        "with tension or cohesion 5, in 3D vertices+centre",
+        "the joint has tension, cohesion or compression, but for time histories; else 2, in 3D vertices, with the "
+        "pressure integrated over the closed part where kn is given or blocks deform (materials.NAME.young); in time "
+        "histories with tension or cohesion 5, and where it is elastic 3, in 3D vertices+centre",
         examples=[5],
     )
 
@@ -73,7 +72,7 @@ class StiffJoint(Parameters):
 
     @property
     def cracks(self) -> bool:
-        """True where the joint cracks or is crushed bit by bit: it has SECTION points, but where blocks land."""
+        """True where the joint cracks or is crushed bit by bit: it has SECTION points then, but in time histories."""
         return False
 
     @property
@@ -89,8 +88,8 @@ class StiffJoint(Parameters):
         """Test whether the contact points of the joint are those that its bending stiffness needs.
 
         Not where blocks land on each other: points between the ends take part of the blow, and a block that rocks loses
-        less than Housner's. deforms: whether the joint carries the deformation of blocks; lands: whether they land on
-        the ends of their joints, in a time history.
+        less than Housner's. deforms: whether the joint carries the deformation of blocks; lands: whether the analysis
+        is a time history.
         """
         return not self.asks_for_points and self.bends and not lands and (deforms or self.kn != "auto")
 

@@ -91,7 +91,7 @@ def one_block(
     case: dict[str, Any] = {
         "gravity": block.gravity,
         "materials": {"stone": {"density": DENSITY}},
-        "joints": {"dry": {"friction": friction, "kn": stiffness * DENSITY * block.gravity, "points": 2}},
+        "joints": {"dry": {"friction": friction, "kn": stiffness * DENSITY * block.gravity}},
         "block": [
             {"id": "base", "vertices": rectangle(-reach, -0.25 * block.height, reach, 0.0), "fixed": True},
             {"id": "block", "vertices": rectangle(-half, 0.0, half, block.height)},

@@ -31,7 +31,7 @@ MORTAR = {"law": "mohr-coulomb", "friction": 0.6, "cohesion": 1e5}
         ({"friction": 0.6, "kn": 1e9, "points": "vertices"}, {}, 4, 4),
         ({"friction": 0.6, "points": 5}, {}, 25, 25),
         (MORTAR, {}, 57, 5),
-        (MORTAR | {"kn": 1e9}, {}, 57, 57),
+        (MORTAR | {"kn": 1e9}, {}, 57, 5),
         (MORTAR | {"kn": 1e9, "points": 3}, {}, 9, 9),
         (MORTAR | {"points": "section"}, {}, 57, 57),
         (MORTAR | {"kn": 1e9, "points": "vertices+centre"}, {}, 5, 5),
@@ -89,20 +89,17 @@ def test_points_follow_stiffness(joint, stone, points):
         materials={"stone": {"density": 2000.0} | stone}, joints={"dry": joint},
     )  # fmt: skip
 
-    def found(analysis, **more):
-        made = scene(case | {"analysis": analysis} | more)
+    def found(analysis):
+        made = scene(case | {"analysis": analysis})
         properties = joint_properties(made.request, made.model)
         bodies, smallest = bodies_at_rest(made.model), smallest_edge(made.model)
         return len(joints_of_start(made.model, bodies, properties, smallest).joints.kn)
 
     assert found({"kind": "gravity"}) == points
-    shaken = {"kind": "time-history", "duration": 1.0}
-    assert found(shaken) == points
-    if "kn" in joint and "points" not in joint and "profile" not in joint:
-        # where a restitution is asked for the ends alone take the blow, unless blocks bend between them
-        ends = {"elastic": 3, "mohr-coulomb": 5}.get(joint.get("law"), 2)
+    if points == 5 and "points" not in joint and "law" not in joint:
+        # where blocks land on each other the ends alone take the blow, unless they bend between them
         bends = stone.get("deformation") == "quadratic"
-        assert found(shaken, damping={"restitution": "housner"}) == (points if bends else ends)
+        assert found({"kind": "time-history", "duration": 1.0}) == (5 if bends else 2)
 
 
 @pytest.mark.parametrize(
@@ -115,10 +112,7 @@ def test_points_follow_stiffness(joint, stone, points):
         ({"kind": "gravity"}, GIVEN | {"law": "mohr-coulomb", "tension": 1e5, "cohesion": 1e5}, {}, False),
         ({"kind": "gravity"}, GIVEN | {"law": "crushing", "compression": 1e7}, {}, False),
         ({"kind": "gravity"}, GIVEN, YOUNG | {"deformation": "quadratic"}, False),
-        ({"kind": "time-history", "duration": 1.0}, GIVEN, {}, True),
-        ({"kind": "time-history", "duration": 1.0}, FRICTION, YOUNG, True),
-        ({"kind": "time-history", "duration": 1.0}, FRICTION, {}, False),  # blocks land on the ends
-        ({"kind": "time-history", "duration": 1.0}, GIVEN | {"points": 2}, {}, False),
+        ({"kind": "time-history", "duration": 1.0}, GIVEN, {}, False),  # blocks land on the ends
         ({"kind": "modes"}, GIVEN, {}, True),
         ({"kind": "pushover"}, GIVEN, {}, True),
     ],

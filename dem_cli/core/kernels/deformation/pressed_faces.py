@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 
-from dem_cli.core.kernels.contact_point import meeting
 from dem_cli.core.kernels.jit import always_inline, inline, kernel
 from dem_cli.core.kernels.overlap import HANDS, fades_by
 from dem_cli.core.kernels.records import INTEGRATED, NOT_INTEGRATED
@@ -37,14 +36,6 @@ def line_gaps(low, high):
     at_low = (2.0 * low + high) / 3.0 if both else low if none else part_low
     at_high = (low + 2.0 * high) / 3.0 if both else high if none else part_high
     return at_low, at_high
-
-
-@always_inline
-def meeting_share(deepest, opened):
-    """Share of the pressure of a face in the steps in which all of it closes or opens, as `contact_point.meeting` has
-    it; 1 in others. deepest: its least gap, which opened by so much in the step [m].
-    """
-    return meeting(deepest, opened) / deepest if deepest < 0.0 else 1.0
 
 
 @always_inline
