@@ -29,6 +29,7 @@ COLUMN = f'{JOINT}[[structure]]\nkind = "column"\nblock = [0.5, 0.5]\ncourses = 
 SHAKEN = f'{COLUMN}[analysis]\nkind = "time-history"\n[motion]\ndirection = [1.0, 0.0]\n'
 RECORD = f'{SHAKEN}kind = "record"\nunit = "m/s2"\nfile = '
 IMPORT = '[[structure]]\nkind = "import"\nfile = '
+FLAT = f"{SPACE}[[structure]]\nid = 's'\nkind = 'wall'\ncourses = 3\nblocks_per_course = 2\n"
 LOAD = "[[load]]\nat = [9.0, 9.0]\nforce = [1.0, 0.0]\n"
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:x="http://www.w3.org/1999/xlink">{}</svg>'
 AROUND = [(math.cos(k / MOST_CORNERS * 6.28), math.sin(k / MOST_CORNERS * 6.28)) for k in range(MOST_CORNERS + 1)]
@@ -134,6 +135,20 @@ REFUSED = {
     "squares of a herringbone": (
         f"{JOINT}[[structure]]\nkind = 'herringbone-wall'\nsize = [10.0, 10.0]\nthickness = 0.3\nblock = [10.0, 0.001]",
         "block: 1e+08 blocks are too many",
+    ),
+    "a wall that is next to nothing thick": (
+        f"{FLAT}thickness = 1e-300\nblock = [0.5, 0.2]\n[[load]]\nblock = 's-2-1'\nat = [0.0, 0.0, 0.3]\n"
+        "force = [1.0, 0.0, 0.0]",
+        "block 's-base' has no volume",
+    ),
+    "courses that are next to nothing high": (
+        f"{FLAT}thickness = 0.2\nblock = [0.5, 1e-300]\n[[load]]\nblock = 's-2-1'\nat = [0.0, 0.0, 0.0]\n"
+        "force = [1.0, 0.0, 0.0]",
+        "block 's-base' has no volume",
+    ),
+    "blocks without a mass that share a load": (
+        f"{FLAT}thickness = 1e-200\nblock = [0.5, 1e-200]\n[[load]]\nstructure = 's'\nforce = [1.0, 0.0, 0.0]",
+        "block 's-base' has no volume",
     ),
     "a name that no file has": (f'{RECORD}"{"a" * 300}.csv"', "aa... cannot be opened (File name too long)"),
     "a drawing that no file is": (f'{JOINT}{IMPORT}"{"a" * 300}.svg"', "aa... cannot be opened (File name too long)"),

@@ -8,7 +8,7 @@ import numpy as np
 
 from dem_cli.core.contact.joints import Faces
 from dem_cli.core.geometry.polygon import following
-from dem_cli.core.geometry.solids import face_areas
+from dem_cli.core.geometry.solids import face_areas, unit_vectors
 from dem_cli.core.kernels.records import FACES, Polyhedra
 from dem_cli.core.kernels.spatial_geometry import AREA, MARGIN, describe
 from dem_cli.core.model.model import Model
@@ -45,7 +45,7 @@ def polyhedra(model: Model, corners: np.ndarray) -> Polyhedra:
     """Collect the parts of a model in place, as the kernels read them; corners: as `corners_of`."""
     topology = model.topology
     areas = face_areas(corners, topology)
-    normals = areas / np.linalg.norm(areas, axis=1)[:, None]
+    normals = unit_vectors(areas, np.linalg.norm(areas, axis=1))
     return Polyhedra(
         np.ascontiguousarray(corners), model.part_starts, topology.part_faces, topology.face_starts,
         topology.face_corners, normals, topology.part_edges, topology.edges, model.parts.sizes,

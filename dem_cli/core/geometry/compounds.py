@@ -6,6 +6,7 @@ import numpy as np
 
 from dem_cli.core.arithmetic.products import product
 from dem_cli.core.geometry.rotation import beside, cross
+from dem_cli.core.geometry.solids import unit_vectors
 from dem_cli.core.geometry.topology import Topology
 
 INNER = 1e-3  # of a part: edges of one block that face each other closer than that lie inside it
@@ -55,7 +56,7 @@ def covered_faces(
     block = part_blocks[part]
     corner = vertices[topology.face_corners[topology.face_starts[:-1]]]
     size = np.linalg.norm(areas, axis=1)
-    normals = areas / size[:, None]
+    normals = unit_vectors(areas, size)
     for i in np.flatnonzero(parts_of_block[block] > 1):
         others = np.flatnonzero((block == block[i]) & (part != part[i]))
         reach = INNER * sizes[part[i]]

@@ -47,6 +47,11 @@ def face_areas(vertices: np.ndarray, topology: Topology) -> np.ndarray:
     return _sums(0.5 * np.cross(b - a, c - a), triangles.faces, topology.n_faces)
 
 
+def unit_vectors(vectors: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Divide vectors (n, 3) by their lengths (n,); zero where a length is zero, as of sides of flat blocks."""
+    return vectors / np.where(lengths == 0.0, 1.0, lengths)[:, None]
+
+
 def properties_of_all(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> VolumeProperties:
     """Volume properties of m polyhedra; polyhedron p has the corners vertices[part_starts[p]:part_starts[p + 1]]."""
     counts, n = np.diff(part_starts), len(part_starts) - 1

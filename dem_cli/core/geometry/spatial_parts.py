@@ -46,8 +46,7 @@ def edges(topology: Topology) -> tuple[np.ndarray, np.ndarray]:
 def normals(vertices: np.ndarray, topology: Topology) -> np.ndarray:
     """Compute outward unit normals of the faces by Newell's sums; zero for faces without an area."""
     areas = solids.face_areas(vertices, topology)
-    sizes = np.linalg.norm(areas, axis=1)[:, None]
-    return areas / np.where(sizes > 0.0, sizes, 1.0)
+    return solids.unit_vectors(areas, np.linalg.norm(areas, axis=1))
 
 
 def inner_faces(vertices: np.ndarray, topology: Topology, part_blocks: np.ndarray, sizes: np.ndarray) -> np.ndarray:

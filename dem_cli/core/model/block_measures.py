@@ -12,7 +12,7 @@ import numpy as np
 
 from dem_cli.core.geometry import parts
 from dem_cli.core.geometry.parts import shapes_of
-from dem_cli.core.geometry.solids import face_areas
+from dem_cli.core.geometry.solids import face_areas, unit_vectors
 from dem_cli.core.geometry.topology import Topology
 
 
@@ -48,9 +48,9 @@ def face_measures(vertices: np.ndarray, topology: Topology) -> FaceMeasures:
     areas = np.linalg.norm(vectors, axis=1)
     start, end = vertices[topology.sides[:, :2]].swapaxes(0, 1)
     lengths, first = np.linalg.norm(end - start, axis=1), topology.face_starts[:-1]
-    sides = (end - start)[first] / lengths[first][:, None]
+    sides = unit_vectors((end - start)[first], lengths[first])
     typical = np.array([median(own) for own in np.split(areas, topology.part_faces[1:-1])])
-    return FaceMeasures(areas, vectors / areas[:, None], sides, np.minimum.reduceat(lengths, first), typical)
+    return FaceMeasures(areas, unit_vectors(vectors, areas), sides, np.minimum.reduceat(lengths, first), typical)
 
 
 def part_measures(vertices: np.ndarray, part_starts: np.ndarray, topology: Topology) -> PartMeasures:

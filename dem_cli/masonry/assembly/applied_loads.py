@@ -48,9 +48,11 @@ def _forces(model: Model, surfaces: Surfaces | None, path: KeyPath, table: Load)
     if table.falls or (table.at is not None and len(chosen) > 1):
         return falling_load(model, surfaces, path, table)._replace(follows=table.follows)
     points = model.centroids[chosen] if table.at is None else np.array([table.at])
-    shares = np.ones(len(chosen)) if table.each else model.masses[chosen] / model.masses[chosen].sum()
-    if len(chosen) == 1:
-        shares = np.ones(1)
+    if table.each or len(chosen) == 1:
+        shares = np.ones(len(chosen))
+    else:
+        masses = model.masses[chosen]
+        shares = masses / (masses.sum() or 1.0)  # blocks of no size are refused afterwards
     forces = shares[:, np.newaxis] * np.array(table.force)
     dead = table.kind == "dead"
     return AppliedLoad(path, dead, chosen, points, forces, np.zeros(len(chosen)), follows=table.follows)
