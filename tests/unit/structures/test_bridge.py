@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from pydantic import ValidationError
 from synthetic.skins import free_volume, model_of, open_area
 
 from dem_cli.core.geometry import polygon
+from dem_cli.masonry.structures import course_layout
 from dem_cli.masonry.structures.arch import SHAPE_JOINTS, Arch
 from dem_cli.masonry.structures.bridge import Bridge, build
 
@@ -100,6 +103,44 @@ def test_what_blocks_are_called():
     space = {block.id for block in build(Bridge.model_validate(SPACE))}
     assert {"arch-1-1-3", "arch-2-2-4", "1-1a", "1-1b", "1-1c"} - space == set()
     assert {block.course for block in build(Bridge.model_validate(TWO)) if block.id == "1-1"} == {5}
+
+
+def test_looks_at_corners_grow_with_the_square_of_the_spans(monkeypatch):
+    """They grew with the cube: each thin leftover looked from every head joint of its neighbours at every corner."""
+    looks, nearest = list[int](), course_layout.near
+
+    def near(place, stops, reach):
+        looks.append(len(stops))
+        return nearest(place, stops, reach)
+
+    monkeypatch.setattr(course_layout, "near", near)
+
+    def counted(spans):
+        looks.clear()
+        build(Bridge.model_validate(TWO | {"count": spans}))
+        return len(looks), sum(looks)
+
+    (calls, corners), (more_calls, more_corners) = counted(4), counted(8)
+    assert more_calls < 2.2 * calls  # some per span, each of which looks at the corners of all spans
+    assert more_corners < 4.4 * corners
+
+
+@given(
+    st.lists(st.floats(-1.0, 3.0), max_size=8), st.lists(st.floats(-1.0, 3.0), max_size=6).map(sorted),
+    st.floats(0.01, 0.9),
+)  # fmt: skip
+def test_joints_beside_a_leftover_never_divide_it(joints, stops, least):
+    """A corner moves a joint by half of a least piece at most: those outside have no say."""
+    tip = (0.0, 2.0)
+    inside = [x for x in joints if tip[0] < x < tip[1]]
+    places = sorted({course_layout.near(x, stops, 0.5 * least) for x in joints})
+    ends = [tip[0]]
+    for x in places:
+        if ends[-1] + least < x < tip[1] - least:
+            ends.append(x)
+    found = course_layout.split(tip, joints, stops, least)
+    assert found == course_layout.split(tip, inside, stops, least)
+    assert found == list(zip(ends, [*ends[1:], tip[1]], strict=True))
 
 
 def test_one_span_without_spandrels_is_the_arch():

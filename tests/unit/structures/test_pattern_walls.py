@@ -12,6 +12,7 @@ from dem_cli.case.base import KeyProblem
 from dem_cli.core.geometry import polygon
 from dem_cli.masonry.assembly.assemble import assembly
 from dem_cli.masonry.assembly.sanity import doubts
+from dem_cli.masonry.structures.patterns.wall_section import WallSection, build, figures
 from dem_cli.masonry.structures.registry import GENERATORS, generated_blocks, generated_figures
 
 LENGTH, HEIGHT, THICKNESS = 4.0, 2.4, 0.5
@@ -69,11 +70,21 @@ def test_pieces_without_an_area_beside_an_arch_are_gone():
     assert area == pytest.approx(2.0 * 1.2 + 0.4 - 0.4 * 0.379 - polygon.area(soffit), rel=1e-12)
 
 
-@pytest.mark.parametrize("through", [0, 4])
+@pytest.mark.parametrize("through", [0, 1, 4])
 def test_a_section_fills_its_outline(through):
     model = model_of(SECTION | {"through": through, "thickness": 1.5, "base": False})
     assert free_volume(model) == pytest.approx(0.8 * 3.0 * 1.5, rel=1e-12)
     assert open_area(model) == pytest.approx(2.0 * 0.8 * 3.0 + 2.0 * (0.8 + 3.0) * 1.5, rel=1e-9)
+
+
+def test_a_section_of_through_stones_alone_has_no_core():
+    """It was an internal error, in what is built and in what `dem check` says of it."""
+    section = WallSection.model_validate(SECTION | {"through": 1})
+    stones = [block for block in build(section) if not block.fixed]
+    assert [block.id for block in stones] == [f"through-{k + 1}" for k in range(len(stones))]
+    assert len(stones) > 8
+    assert all(np.ptp(block.parts[0][:, 0]) == 0.8 for block in stones)
+    assert figures(section) == [("core", "none: every course is a through-stone")]
 
 
 @pytest.mark.parametrize("seed", range(4))
