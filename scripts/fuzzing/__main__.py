@@ -178,17 +178,22 @@ def outcome(kind: str, text: str, folder: Path, limit: float = LIMIT) -> tuple[s
     return ended, wrong, watch.used
 
 
+def bound(what: int, most: int) -> None:
+    """Lets this process have so much of it, or what it may have at all where that is less."""
+    _, hard = resource.getrlimit(what)
+    resource.setrlimit(what, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
+
+
 def work(kind: str, seeds: range, pipe: int, limit: float, keep: Path) -> None:
     """A process that goes through these seeds and tells of each, before and after; cases of finds stay in `keep`."""
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, resource.RLIM_INFINITY))
+    bound(resource.RLIMIT_AS, MEMORY)
     os.environ["DEM_TRACEBACK"] = "1"
     pool = project_cases()
     with tempfile.TemporaryDirectory() as name, os.fdopen(pipe, "w", buffering=1) as tell:
         os.chdir(name)  # reports of internal errors go there
         for seed in seeds:
             print(json.dumps([seed]), file=tell)
-            most = int(time.process_time() + 5 * limit + 120)  # for loops that never come back to Python
-            resource.setrlimit(resource.RLIMIT_CPU, (most, resource.RLIM_INFINITY))
+            bound(resource.RLIMIT_CPU, int(time.process_time() + 5 * limit + 120))  # loops that never come back
             kept = keep / f"{kind}-{seed}.toml"
             kept.write_text(text := text_of(kind, seed, pool), encoding="utf-8")
             ended, wrong, used = outcome(kind, text, Path(name), limit)
@@ -203,14 +208,16 @@ def batch(kind: str, seeds: range, limit: float, keep: Path) -> Iterator[tuple[i
     """What a process says of these seeds: all of them, or up to one that ends it."""
     ours, theirs = os.pipe()
     if (child := os.fork()) == 0:
+        code = 1  # a find: without one the same seeds would begin for ever
         try:
             os.close(ours)
             work(kind, seeds, theirs, limit, keep)
+            code = 0
         except BaseException:
             traceback.print_exc()
         finally:
             sys.stderr.flush()
-            os._exit(0)
+            os._exit(code)
     os.close(theirs)
     at = seeds.start
     with os.fdopen(ours) as told:

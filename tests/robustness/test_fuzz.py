@@ -114,18 +114,21 @@ def test_a_case_that_has_had_its_time_is_cut_off(tmp_path, monkeypatch):
     assert used < 3.0
 
 
-def test_a_process_that_dies_is_a_find(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize("way", ["ends", "raises"])
+def test_a_process_that_dies_is_a_find(tmp_path, monkeypatch, capsys, way):
+    """One that raised said nothing and went: its seeds began anew, for ever."""
+
     def work(kind, seeds, pipe, limit, keep):
         for seed in seeds:
             fuzzing.os.write(pipe, f"{json.dumps([seed])}\n".encode())
             if seed == 5:
-                fuzzing.os._exit(7)
+                fuzzing.os._exit(7) if way == "ends" else fuzzing.os.read(-1, 1)
             fuzzing.os.write(pipe, f"{json.dumps([seed, 'read', [], 0.5])}\n".encode())
 
     monkeypatch.setattr(fuzzing, "work", work)
     assert fuzzing.fuzz("checks", range(3, 9), 20.0, tmp_path) == 1
     said = capsys.readouterr().out
-    assert "find: checks 5 (0.0 CPU s): the process died: 7" in said
+    assert f"find: checks 5 (0.0 CPU s): the process died: {7 if way == 'ends' else 1}" in said
     assert "checks 3:9: 5 read, 1 died" in said
 
 
