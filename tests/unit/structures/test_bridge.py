@@ -120,7 +120,7 @@ def test_looks_at_corners_grow_with_the_square_of_the_spans(monkeypatch):
         build(Bridge.model_validate(TWO | {"count": spans}))
         return len(looks), sum(looks)
 
-    (calls, corners), (more_calls, more_corners) = counted(4), counted(8)
+    (calls, corners), (more_calls, more_corners) = counted(2), counted(4)
     assert more_calls < 2.2 * calls  # some per span, each of which looks at the corners of all spans
     assert more_corners < 4.4 * corners
 
