@@ -40,11 +40,12 @@ def connected(address: str, folder: Path) -> Iterator[Any]:
     try:
         with at_once():
             client = Client(address, timeout=PATIENCE, set_as_default=False)
-    except (OSError, ValueError) as error:
-        raise UsageError(f"--scheduler {address}: no Dask scheduler answers ({str(error).splitlines()[0]})") from None
     except TypeError:  # of Dask, where its configuration names no certificates
         raise UsageError(f"--scheduler {address}: Dask has no certificates; tell it in distributed.comm.tls "
                          "(docs/guide/sweeps.md)") from None  # fmt: skip
+    except Exception as error:  # Dask takes the words of another server for lengths: MemoryError, struct.error
+        said = next(iter(str(error).splitlines()), type(error).__name__)
+        raise UsageError(f"--scheduler {address}: no Dask scheduler answers ({said})") from None
     try:
         _inspect(client, address, folder)
         yield client

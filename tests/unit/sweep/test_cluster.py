@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from dem_cli.app.cli.main import main
-from dem_cli.app.sweep.cluster import doubt
+from dem_cli.app.sweep.cluster import connected, doubt
 from dem_cli.errors import UsageError
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -57,6 +58,31 @@ if __name__ == "__main__":
 )
 def test_a_scheduler_that_others_may_reach_is_doubted(address, alone):
     assert (doubt(address) is None) is alone
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (MemoryError("Unable to allocate 3.07 EiB"), "Unable to allocate 3.07 EiB"),
+        (
+            struct.error("unpack_from requires a buffer of at least 8 bytes"),
+            "unpack_from requires a buffer of at least",
+        ),
+        (OSError("in a stream\nof two lines"), "in a stream)"),
+        (TimeoutError(), "TimeoutError"),
+    ],
+    ids=["length", "end", "lines", "nothing"],
+)
+def test_servers_that_are_no_scheduler(monkeypatch, error, said):
+    """Dask takes what a web server says, such as its dashboard, for lengths: want of memory, or a fault of dem."""
+
+    def client(*_, **__):
+        raise error
+
+    monkeypatch.setattr(pytest.importorskip("dask.distributed"), "Client", client)
+    with pytest.raises(UsageError) as refused, connected("tcp://127.0.0.1:8787", Path()):
+        pass
+    assert str(refused.value).startswith(f"--scheduler tcp://127.0.0.1:8787: no Dask scheduler answers ({said}")
 
 
 def test_a_sweep_says_so(tmp_path, monkeypatch):
