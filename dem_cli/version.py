@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-__version__ = "0.22.0"
+__version__ = "0.23.0"
 NAME = "dem-cli"  # of the distribution, which no index has: it comes from a checkout
 _HERE = Path(__file__).resolve().parent.parent
 

@@ -114,7 +114,8 @@ def test_page_and_junit(file, tmp_path):
     assert "| [blind](#blind) | 1 | 1, 1 not measured | 0 | 0 | 0 | – | – |" in page
     (row,) = (line for line in page.splitlines() if "cases/block.toml" in line and line.startswith("|"))
     assert "+5.00\N{NO-BREAK SPACE}% ± 15.0\N{NO-BREAK SPACE}%" in row
-    assert row.endswith("| – |  | predicted |")
+    assert row.endswith("| – | predicted |")
+    assert "<br>on 20" in row
     assert "Model errors:\n\n* [cases/block](../cases/block.toml), `failure_load`: blocks like it" in page
     (skipped,) = ET.parse(tmp_path / "found.xml").getroot().iter("skipped")
     assert skipped.get("message").endswith("nothing is measured yet")

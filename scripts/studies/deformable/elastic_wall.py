@@ -31,11 +31,14 @@ def displacement(ratio: float, deformation: str) -> float:
     """Of the beam per newton of a push that acts evenly in it [m], all joints closed; linear. ratio: kn h/E."""
     kn = ratio * YOUNG / HEIGHT
     law = f"{{law='elastic', kn={kn!r}, ks={SHEAR * kn!r}, points=5}}"
-    return compliance(from_file(WALL, f"joints.dry={law}", *stones(deformation)))
+    return compliance(from_file(WALL, f"joints.dry={law}", *stones(deformation)), evenly=True)
 
 
-def compliance(loaded: LoadedCase) -> float:
-    """Work of the live loads per square of them, all joints closed: displacement of a unit load along itself [m/N]."""
+def compliance(loaded: LoadedCase, evenly: bool = False) -> float:
+    """Work of the live loads per square of them, all joints closed: displacement of a unit load along itself [m/N].
+
+    evenly: loads act over all of their blocks, and do not deform these by themselves.
+    """
     from scipy.sparse import coo_array, diags_array
     from scipy.sparse.linalg import spsolve
 
@@ -55,7 +58,7 @@ def compliance(loaded: LoadedCase) -> float:
     motion = coo_array((rows[used], (places[used], at[used])), shape=(d * len(rows), total + len(stiffness))).tocsr()
     springs = diags_array(np.column_stack([joints.kn, *[joints.ks] * (d - 1)]).ravel())
     inside = diags_array(np.concatenate([np.zeros(total), stiffness]))
-    on_modes = model.live_mode_loads[~model.fixed].ravel() if model.n_modes else stiffness
+    on_modes = np.zeros(len(stiffness)) if evenly else model.live_mode_loads[~model.fixed].ravel()
     forces = np.concatenate([model.live_loads[~model.fixed].ravel(), on_modes])
     return float(spsolve((motion.T @ springs @ motion + inside).tocsc(), forces) @ forces)
 
