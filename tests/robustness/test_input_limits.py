@@ -221,7 +221,7 @@ def damaged_drawing(folder, old, new):
 @pytest.mark.parametrize("new", [b"\x98", b"1\x98", b"1e999", b"nan"])
 @pytest.mark.filterwarnings("error")
 def test_a_drawing_of_damaged_bytes(tmp_path, new):
-    """What is no text, and numbers that are none, are named in one line that a terminal and a page can show."""
+    """Damaged text and numbers of a drawing are named in one line that a terminal and a page can show."""
     done = damaged_drawing(tmp_path, b"1234.0", new)
     assert done.exit_code == 2, done.output
     assert done.output.startswith("error: ")

@@ -47,7 +47,10 @@ def pressed_by_hand(ratio: float) -> float:
 
 
 def displacement(ratio: float, way: str, dimension: int = 2, load: str = "bent") -> float:
-    """The same of blocks and joints [m/N]; way: how blocks deform; load: "bent" or "pressed", by a force at the top."""
+    """Compute how far the top of the column of blocks moves along a force there [m/N].
+
+    way: how blocks deform; load: "bent" or "pressed".
+    """
     kn, half = ratio * YOUNG / HEIGHT, WIDTH / 2.0
     blocks = [{"id": "foot", "fixed": True, **_block(-half, -HEIGHT, dimension)}]
     blocks += [{"id": f"block-{k + 1}", **_block(-half, k * HEIGHT, dimension)} for k in range(BLOCKS)]

@@ -58,7 +58,8 @@ def compliance(loaded: LoadedCase, evenly: bool = False) -> float:
     motion = coo_array((rows[used], (places[used], at[used])), shape=(d * len(rows), total + len(stiffness))).tocsr()
     springs = diags_array(np.column_stack([joints.kn, *[joints.ks] * (d - 1)]).ravel())
     inside = diags_array(np.concatenate([np.zeros(total), stiffness]))
-    on_modes = np.zeros(len(stiffness)) if evenly else model.live_mode_loads[~model.fixed].ravel()
+    deforms = model.n_modes and not evenly
+    on_modes = model.live_mode_loads[~model.fixed].ravel() if deforms else np.zeros(len(stiffness))
     forces = np.concatenate([model.live_loads[~model.fixed].ravel(), on_modes])
     return float(spsolve((motion.T @ springs @ motion + inside).tocsc(), forces) @ forces)
 

@@ -151,7 +151,7 @@ def test_the_explicit_solver_shows_both_ends():
 
 
 def test_a_bracket_that_stays_wider_is_narrowed_by_the_explicit_solver(monkeypatch):
-    """As where a load between the last one held and the first that fails stays undecided: all of it was thrown away."""
+    """Loads in the bracket that an implicit history leaves undecided are tried explicitly; all began again before."""
     settings = replace(DEFAULT, implicit_history=replace(DEFAULT.implicit_history, blocks=60))
     monkeypatch.setattr(ImplicitHistory, "_narrowed", lambda self, resolution: False)
     found = solve(CASES / "wall_2.toml", "analysis.follow=0", settings=settings)[0]
