@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from engine import scene
-from studies.deformable import elastic_wall
+from studies.deformable import bending, elastic_wall
 
 from dem_cli.core.engine import measures
 from dem_cli.core.engine.monitors import Monitors
@@ -68,6 +68,16 @@ def test_blocks_that_bend_are_near_to_finite_elements():
     """By far nearer than rigid blocks (28 %), and stiffer, as they can do less."""
     error = elastic_wall.displacement(0.44, "quadratic") / elastic_wall.finite_elements(0.44, 0.05) - 1.0
     assert error == pytest.approx(-0.0256, abs=1e-3)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_study_of_columns_has_closed_forms(dimension):
+    """Rigid blocks have joints alone, n/(kn A) by hand; blocks of uniform strain shorten with them."""
+    ratio, area = 0.44, bending.WIDTH * bending.THICKNESS
+    joints = bending.BLOCKS * bending.HEIGHT / (ratio * bending.YOUNG * area)
+    assert bending.displacement(ratio, "none", dimension, "pressed") == pytest.approx(joints, rel=1e-9)
+    strained = bending.displacement(ratio, "uniform-strain", dimension, "pressed")
+    assert strained == pytest.approx(bending.pressed_by_hand(ratio), rel=2e-4)
 
 
 @pytest.mark.parametrize("kinematics", ["fixed", "large"])
