@@ -356,23 +356,43 @@ def moment(sim: Simulation) -> Moment:
 
 def frame_of(sim: Simulation, seen: Moment, stage: str) -> Frame:
     """Make the frame of a moment that was recorded, with the load of now."""
+    contacts = contact_record(sim, seen.contacts)
     return Frame(
         stage, seen.steps, sim.load * sim.live_scale, seen.displacement, seen.positions, seen.orientations,
-        seen.velocities, contact_record(sim, seen.contacts), seen.time, seen.stresses, seen.links,
-        first_moments_of(sim, seen),
+        seen.velocities, contacts, seen.time, seen.stresses, seen.links, first_moments_of(sim, seen, contacts),
     )  # fmt: skip
 
 
-def first_moments_of(sim: Simulation, seen: Moment) -> np.ndarray | None:
-    """Sum the first moments of loads at points, as they are now, and of ties and bars, as Frame.first_moments."""
+def first_moments_of(sim: Simulation, seen: Moment, contacts: ContactRecord) -> np.ndarray | None:
+    """Sum the first moments of loads at points, as they are now, and of ties and bars, as Frame.first_moments.
+
+    Geometry of the start is in equilibrium with arms of the start: by how far those of contact points in the frame
+    differ from them comes on top.
+    """
     dead, live = sim.dead_share, float(sim.control[slot.LIVE_FACTOR]) * sim.live_scale
     found = first_moments.of_loads(sim.model, seen.orientations, dead, live)
+    if found is None and seen.links is None:
+        return None
+    if sim.kinematics == "fixed":
+        back = _moments_of_places(sim, seen, contacts)
+        found = back if found is None else found + back
     if seen.links is None:
         return found
     blocks, points, forces = seen.links.on_blocks(seen.positions, seen.orientations)
     of, held = blocks[blocks >= 0], blocks >= 0
     of_links = first_moments.summed(sim.model.n_blocks, of, points[held] - seen.positions[of], forces[held])
     return of_links if found is None else found + of_links
+
+
+def _moments_of_places(sim: Simulation, seen: Moment, contacts: ContactRecord) -> np.ndarray:
+    """Sum contact forces ⊗ (arms of the start − arms in the frame) of each block [N m], (n_blocks, 3 or 6)."""
+    joints, model, forces = seen.contacts.joints, sim.model, contacts.forces()
+    shift = joints.points[points_in_use(joints)] + sim.origin - contacts.points
+    first, second = (
+        first_moments.summed(model.n_blocks, blocks, shift + (seen.positions - model.centroids)[blocks], forces)
+        for blocks in contacts.blocks.T
+    )
+    return second - first
 
 
 def link_record(sim: Simulation) -> LinkRecord | None:

@@ -231,8 +231,9 @@ FRAMES = {
     ),
     "stresses": _of_stress("stress of each block, in its own axes, tension positive; where blocks deform alone"),
     "first_moments": _of_stress(
-        "symmetric part of the sum of f ⊗ x of loads at points, ties and bars about the centroid of their block; where "
-        "there are any alone", "N m",
+        "symmetric part of the sum of f ⊗ x of loads at points, ties and bars about the centroid of their block, and "
+        "in geometry of the start of contact forces, x their arm of the start less that in the frame; where there are "
+        "such loads, ties or bars alone", "N m",
     ),
     "step": Described("solver steps so far", PURE, ("frame",), kind=WHOLE),
     "load": Described("load multiplier λ", PURE, ("frame",)),

@@ -65,6 +65,23 @@ def test_a_load_at_the_foot_leaves_the_stone_to_its_weight(dimension):
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
+def test_in_geometry_of_the_start_it_does_not_matter_how_far_a_block_has_moved(dimension):
+    """A stone that sinks by 6 cm on a soft bed and slides by 4 cm: arms are those of the start."""
+    push = {"block": "b", "force": at(2e4, -5e4, dimension, 0.0), "at": at(WIDE / 2, 0.0, dimension)}
+    blocks = [box("base", -1.0, -HIGH, dimension, fixed=True, wide=3.0), box("b", 0.0, 0.0, dimension)]
+    made = case(dimension, blocks, load=[push], analysis={"kind": "gravity", "kinematics": "fixed"})
+    made["joints"]["dry"] |= {"kn": 5e6, "ks": 3e6, "friction": 2.0}
+    found = dem_cli.run(made)
+    frame, b = found.frames[-1], found.model.block_ids.index("b")
+    moved = frame.positions[b] - found.model.centroids[b]
+    assert moved[0] > 0.03
+    assert moved[-1] < -0.05
+    mean = mean_stresses(found.model, frame)[b]
+    assert mean[-1, -1] == pytest.approx(-WEIGHT / 2 / AREA, rel=1e-2)
+    assert abs(mean[0, -1]) < 1e-2 * 2e4 / AREA
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
 def test_a_live_load_counts_with_its_multiplier(dimension):
     """Pushed at its top by λ F the block is sheared by λ F over its section, whatever presses at its foot."""
     live = {"block": "b", "force": at(1e4, 0.0, dimension, 0.0), "at": at(0.0, HIGH, dimension), "kind": "live"}
